@@ -9,6 +9,7 @@
   wrong(root.dataset.state !== "ready", `the page is ${root.dataset.state ?? "not ready"}`);
 
   const head = JSON.parse(document.getElementById("carom-page").textContent);
+  const differ = (a, b) => a.length !== b.length || a.some((pixel, k) => pixel !== b[k]);
   const shown = head.plots.filter((plot) => !plot.folded).length;
   const plots = [...document.querySelectorAll(".plot .uplot canvas")];
   wrong(plots.length !== shown, `${plots.length} plots, not ${shown}`);
@@ -18,6 +19,25 @@
     context.drawImage(canvas, 0, 0);
     return new Uint32Array(context.getImageData(0, 0, copy.width, copy.height).data.buffer);
   };
+  // the statuses stand under the plots: at the same places, and for the same times when these are zoomed
+  const tryRaster = async () => {
+    const over = document.querySelector("#plot-force .u-over");
+    const raster = document.querySelector(".raster canvas");
+    const [plot, rows] = [over, raster].map((element) => element.getBoundingClientRect());
+    const apart = Math.max(Math.abs(plot.left - rows.left), Math.abs(plot.right - rows.right));
+    wrong(apart > 2, `the statuses begin or end ${apart} pixels beside the plots`);
+    const whole = colours(raster);
+    const at = (part) => ({ clientX: plot.left + part * plot.width, clientY: plot.top + 20, movementX: 9, bubbles: true, button: 0 });
+    over.dispatchEvent(new MouseEvent("mousemove", at(0.01)));
+    over.dispatchEvent(new MouseEvent("mousedown", at(0.01)));
+    over.dispatchEvent(new MouseEvent("mousemove", at(0.02)));
+    document.dispatchEvent(new MouseEvent("mouseup", at(0.02)));
+    await pause(100);
+    wrong(!differ(whole, colours(raster)), "the statuses are not zoomed with the plots");
+    over.dispatchEvent(new MouseEvent("dblclick", at(0.5)));
+    await pause(100);
+    wrong(differ(whole, colours(raster)), "a double click does not show all times again");
+  };
   for (const [k, canvas] of plots.entries()) wrong(new Set(colours(canvas)).size < 4, `plot ${k} is blank`);
   for (const more of document.querySelectorAll("details")) more.open = true;
   await pause(100);
@@ -25,12 +45,17 @@
   wrong(all !== head.plots.length, `${all} plots when all is opened, not ${head.plots.length}`);
   wrong(Boolean(head.raster) !== Boolean(document.querySelector(".raster canvas")), "the raster of the statuses");
 
-  wrong(document.querySelectorAll(".tile").length < 3, "tiles are missing");
+  const odd = window.written.filter((text) => /Infinity|NaN|undefined|null/.test(text));
+  wrong(odd.length > 0, `a plot has the text ${odd[0]}`);
+  if (head.raster) await tryRaster();
+  wrong(document.querySelector(".tiles") && document.querySelectorAll(".tile").length < 3, "tiles are missing");
   for (const link of document.querySelectorAll('a[href^="#"]')) {
     const target = link.getAttribute("href").slice(1);
     wrong(!document.getElementById(target), `a link leads to ${target}, which is not there`);
   }
   wrong(document.documentElement.scrollWidth > innerWidth, "the page is wider than its window");
+  const hidden = head.plots.some((plot) => plot.curves.some((curve) => curve.hidden));
+  wrong(hidden !== Boolean(document.querySelector(".u-legend .u-off")), "curves that are hidden at first");
 
   const withoutModel = root.classList.contains("no-model");
   wrong(withoutModel !== WITHOUT_WEBGL, `the model ${withoutModel ? "cannot be" : "is"} drawn`);
@@ -44,7 +69,6 @@
       viewer.renderer.render(viewer.scene, viewer.camera);
       return colours(viewer.renderer.domElement);
     };
-    const differ = (a, b) => a.length !== b.length || a.some((pixel, k) => pixel !== b[k]);
     const last = head.model.frames.length - 1;
     viewer.go(0);
     const first = picture();
@@ -75,6 +99,21 @@
       wrong(!viewer.parts.chosen.visible && !viewer.parts.chosenLines.object.visible, "the chosen group is not drawn");
       group.value = "";
       group.dispatchEvent(new Event("change"));
+    }
+    const tile = document.querySelector('.tile[data-field="von_mises"]');
+    const stress = head.model.frames.findIndex((frame) => frame.kinds.includes("largest stress"));
+    wrong(Boolean(tile) !== stress >= 0, "the tile of the largest stress");
+    if (tile) {
+      viewer.go(stress === 0 ? last : 0);
+      viewer.colour("displacement");
+      tile.click();
+      wrong(viewer.choice.frame !== stress || viewer.choice.field !== "von_mises", "the tile does not show the largest stress");
+      wrong(!viewer.parts.peak.visible, "nothing marks the largest stress");
+      const marked = picture();
+      viewer.parts.peak.visible = false;
+      wrong(!differ(marked, picture()), "the mark of the largest stress is not seen");
+      const told = document.getElementById("model-peak")?.textContent ?? "";
+      wrong(!told.includes("largest at this instant"), `the largest stress is told as "${told}"`);
     }
     for (const jump of document.querySelectorAll(".jumps button")) jump.click();
     const boxes = [...document.querySelectorAll('#model-settings input[type="checkbox"]')];

@@ -61,11 +61,9 @@ export function controls(viewer) {
       viewer.fit();
     },
   });
+  const colours = select("colour", instants.fields.map((f) => [f.id, f.name]), (id) => viewer.colour(id));
   settings.append(
-    select("colour", instants.fields.map((f) => [f.id, f.name]), (id) => {
-      choice.field = id;
-      viewer.show();
-    }),
+    colours,
     select("range", [["run", "of all instants"], ["frame", "of this instant"]], (range) => {
       choice.range = range;
       viewer.show();
@@ -78,6 +76,10 @@ export function controls(viewer) {
   };
   settings.append(
     check("mesh", choice.edges, drawing((on) => parts.toggle(parts.net, on))),
+    check("largest value", choice.peak, (on) => {
+      choice.peak = on;
+      viewer.show();
+    }),
     check("undeformed", false, drawing((on) => (parts.ghost.visible = on))),
   );
   if (model.groups.length > 0) {
@@ -139,6 +141,9 @@ export function controls(viewer) {
       const reason = kinds.length > 0 ? ` – ${kinds.join(", ")}` : "";
       const scale = viewer.factor === 1 ? "" : ` – displacements × ${digits(viewer.factor)}`;
       caption.textContent = `${quantity(still.time, page.abscissa.unit, 5)}${reason}${scale}`;
+    },
+    coloured(field) {
+      colours.firstElementChild.value = field;
     },
     playing(on) {
       play.textContent = on ? "❚❚ stop" : "▶ play";

@@ -126,6 +126,41 @@ export class Instants {
     return { ...field, range: [low, high] };
   }
 
+  /**
+   * The value of a field that matters most at an instant, with its place and displacement: the largest magnitude, of the quality the least; of
+   * stress and plastic strain that of all cells, those inside included. `null` where there is none.
+   */
+  peak(id, frame) {
+    const field = this.fields.find((f) => f.id === id);
+    if (field.categories || id === "weight") return null;
+    const of = this.frames[frame].largest[id];
+    if (of) return { ...of, word: "largest" };
+    const isLeast = id === "quality";
+    const measure = isLeast ? (value) => -value : Math.abs;
+    const values = this.values(id, frame);
+    let best = -1;
+    values.forEach((value, k) => {
+      if (Number.isFinite(value) && (best < 0 || measure(value) > measure(values[best]))) best = k;
+    });
+    if (best < 0 || values[best] === 0) return null;
+    const nodes = field.on === "node" ? [best] : this.#nodesOf(best);
+    if (nodes.length === 0) return null;
+    const mean = (array) => [0, 1, 2].map((i) => nodes.reduce((sum, n) => sum + array[3 * n + i], 0) / nodes.length);
+    return { value: values[best], place: mean(this.x), moved: mean(this.moved(frame)), word: isLeast ? "least" : "largest" };
+  }
+
+  /** Nodes of the part of a cell that is drawn. */
+  #nodesOf(cell) {
+    const found = new Set();
+    for (const [corners, cells, width] of [["triangles", "triangle_cells", 3], ["lines", "line_cells", 2]]) {
+      const own = this.keep(corners, () => this.read(this.model[corners]));
+      this.keep(cells, () => this.read(this.model[cells])).forEach((other, k) => {
+        if (other === cell) for (let i = 0; i < width; i += 1) found.add(own[width * k + i]);
+      });
+    }
+    return [...found];
+  }
+
   /** The instant nearest to a time, by its number. */
   nearest(time) {
     let best = 0;

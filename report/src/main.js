@@ -8,9 +8,10 @@ import { showPlots } from "./plots.js";
 import { showRaster } from "./raster.js";
 import { showModel } from "./viewer.js";
 
-/** What the parts of the page tell each other: the chosen instant. */
+/** What the parts of the page tell each other: the chosen instant, and the times that the plots show. */
 function clock() {
   const listeners = [];
+  const followers = [];
   return {
     time: null,
     listen: (listener) => listeners.push(listener),
@@ -18,7 +19,21 @@ function clock() {
       this.time = time;
       for (const listener of listeners) listener(time, by);
     },
+    follow: (follower) => followers.push(follower),
+    span(from, to) {
+      for (const follower of followers) follower(from, to);
+    },
   };
+}
+
+/** A tile with an instant sets it, and what the model is coloured by. */
+function showTiles(shared) {
+  for (const tile of document.querySelectorAll(".tile[data-time]")) {
+    tile.addEventListener("click", () => {
+      if (tile.dataset.field) window.carom?.colour(tile.dataset.field);
+      shared.set(Number(tile.dataset.time), tile);
+    });
+  }
 }
 
 async function start() {
@@ -29,8 +44,9 @@ async function start() {
   const read = (array) => numbers(bytes, array);
   const shared = clock();
   const root = document.documentElement;
-  showPlots(page, read, shared);
   if (page.raster) showRaster(page, read, shared);
+  showPlots(page, read, shared);
+  showTiles(shared);
   if (page.model) {
     try {
       showModel(page, read, shared);

@@ -6,6 +6,8 @@ import { digits, prefix, quantity } from "./format.js";
 import { colour, onTheme, series } from "./theme.js";
 
 const HEIGHT = 220;
+/** What is left free beside the axes of time of all plots, so that they stand under each other. */
+const BESIDE = { left: 76, right: 24 };
 /** Key of the cursors of all plots over time. */
 const SYNC = "time";
 
@@ -32,6 +34,9 @@ function powers(low, high) {
   for (let k = Math.ceil(first / every) * every; k <= last; k += every) all.push(10 ** k);
   return all;
 }
+
+/** uPlot writes only powers of ten whose digits it knows; what it leaves out is null. */
+const unfiltered = (_, splits) => splits;
 
 const power = (value) => (value === 1 ? "1" : `1e${Math.round(Math.log10(value))}`.replace("-", "−"));
 
@@ -82,31 +87,33 @@ function drawMarks(plot, page, { rounding, overTime }, instant) {
   ctx.restore();
 }
 
-/** The table under a plot: the names of its curves with their values at the pointer, and their extremes. */
-function extremes(curves) {
+/** The extremes of the curves that are shown at first; what is rounding beside the largest value is zero. */
+function extremes(all) {
+  const curves = all.filter(({ curve, ys }) => !curve.hidden && ys.length > 0);
+  const rounding = 1e-12 * largest(curves.map((c) => c.ys));
+  const shown = (y, unit) => quantity(Math.abs(y) < rounding ? 0 : y, unit);
+  const found = curves.map((one) => {
+    let [low, high] = [0, 0];
+    one.ys.forEach((y, k) => {
+      if (y < one.ys[low]) low = k;
+      if (y > one.ys[high]) high = k;
+    });
+    const at = (k) => `${shown(one.ys[k], one.unit)} at ${quantity(one.xs[k], one.axis)}`;
+    return { ...one, low, high, at };
+  });
   const table = document.createElement("p");
   table.className = "extremes";
   if (curves.length > 4) {
-    const all = curves.flatMap(({ curve, xs, ys, unit, axis }) =>
-      Array.from(ys, (y, k) => ({ y, text: `${quantity(y, unit)} at ${quantity(xs[k], axis)} (${curve.name})` })),
-    );
-    const low = all.reduce((a, b) => (b.y < a.y ? b : a));
-    const high = all.reduce((a, b) => (b.y > a.y ? b : a));
-    table.textContent = `lowest ${low.text} · highest ${high.text}`;
+    const low = found.reduce((a, b) => (b.ys[b.low] < a.ys[a.low] ? b : a));
+    const high = found.reduce((a, b) => (b.ys[b.high] > a.ys[a.high] ? b : a));
+    table.textContent = `lowest ${low.at(low.low)} (${low.curve.name}) · highest ${high.at(high.high)} (${high.curve.name})`;
     return table;
   }
-  const texts = curves.map(({ curve, xs, ys, unit, axis }) => {
-    if (curve.role === "exact" || ys.length === 0) return null;
-    let low = 0;
-    let high = 0;
-    ys.forEach((y, k) => {
-      if (y < ys[low]) low = k;
-      if (y > ys[high]) high = k;
-    });
-    const at = (k) => `${quantity(ys[k], unit)} at ${quantity(xs[k], axis)}`;
-    return ys[low] === ys[high] ? `${curve.name}: ${quantity(ys[0], unit)}` : `${curve.name}: ${at(low)} … ${at(high)}`;
+  const texts = found.filter(({ curve }) => curve.role !== "exact").map(({ curve, ys, unit, low, high, at }) => {
+    const values = ys[low] === ys[high] ? shown(ys[0], unit) : `${at(low)} … ${at(high)}`;
+    return `${curve.name}: ${values}`;
   });
-  table.textContent = texts.filter(Boolean).join(" · ");
+  table.textContent = texts.join(" · ");
   return table;
 }
 
@@ -127,7 +134,7 @@ class Plot {
       unit: plot.unit,
       axis: this.axis.unit,
     }));
-    [this.factor, this.sign] = plot.scale === "linear" ? prefix(largest(this.curves.map((c) => c.ys)), plot.unit) : [1, ""];
+    [this.factor, this.sign] = plot.scale === "linear" ? prefix(largest(this.curves.filter((c) => !c.curve.hidden).map((c) => c.ys)), plot.unit) : [1, ""];
     [this.xFactor, this.xSign] = prefix(this.overTime ? page.end : 1, this.axis.unit);
     this.data = this.join();
     const title = document.createElement("figcaption");
@@ -163,6 +170,7 @@ class Plot {
     return {
       width: Math.max(280, this.figure.clientWidth || 900),
       height: HEIGHT,
+      padding: [null, BESIDE.right, null, 0],
       scales: {
         x: { time: false, distr: spec.scale === "double logarithmic" ? 3 : 1 },
         y: logarithmic ? { distr: 3, range: (_, low, high) => this.decades(low, high) } : {},
@@ -177,7 +185,7 @@ class Plot {
           size: 34,
           ...(this.overTime
             ? { values: (_, splits) => splits.map((t) => digits(t / this.xFactor)) }
-            : { splits: (_, axis, low, high) => powers(low, high), values: (_, splits) => splits.map(power) }),
+            : { splits: (_, axis, low, high) => powers(low, high), filter: unfiltered, values: (_, splits) => splits.map(power) }),
         },
         {
           stroke: ink,
@@ -185,9 +193,9 @@ class Plot {
           ticks: grid,
           label: name(spec.quantity, this.sign, spec.unit),
           labelSize: 20,
-          size: 56,
+          size: BESIDE.left - 20,
           ...(logarithmic
-            ? { splits: (_, axis, low, high) => powers(low, high), values: (_, splits) => splits.map(power) }
+            ? { splits: (_, axis, low, high) => powers(low, high), filter: unfiltered, values: (_, splits) => splits.map(power) }
             : { values: (_, splits) => splits.map((y) => digits(y)) }),
         },
       ],
@@ -197,6 +205,7 @@ class Plot {
           label: curve.name,
           spanGaps: true,
           points: { show: false },
+          show: !curve.hidden,
           ...look(curve, this.curves.filter((c) => c.curve.role !== "exact").findIndex((c) => c.curve === curve)),
           value: (_, y) => value(y),
         })),
@@ -250,6 +259,8 @@ class Plot {
 
 /** Puts every plot into its section, in place of the static figures. */
 export function showPlots(page, read, shared) {
+  const { style } = document.documentElement;
+  for (const side of ["left", "right"]) style.setProperty(`--beside-${side}`, `${BESIDE[side]}px`);
   const plots = [];
   let zooming = false;
   const all = {
@@ -258,6 +269,7 @@ export function showPlots(page, read, shared) {
       zooming = true;
       const { min, max } = from.scales.x;
       for (const other of plots) if (other.overTime && other.plot !== from) other.plot.setScale("x", { min, max });
+      shared.span(min, max);
       zooming = false;
     },
   };

@@ -3,6 +3,7 @@
 import {
   BufferAttribute,
   BufferGeometry,
+  CanvasTexture,
   Color,
   DoubleSide,
   GLSL3,
@@ -15,6 +16,7 @@ import {
   Plane,
   Points,
   PointsMaterial,
+  SRGBColorSpace,
   ShaderMaterial,
   Vector3,
 } from "three";
@@ -26,6 +28,9 @@ import { colour, series } from "./theme.js";
 
 /** Most categories that the shader knows; further ones begin again. */
 const CATEGORIES = 12;
+
+/** Pixels of the picture of a ring. */
+const RING = 64;
 
 const VERTEX = `
 in float value;
@@ -106,6 +111,7 @@ export class ModelScene {
     this.#groups();
     this.#obstacles(read);
     this.#forces();
+    this.#peak();
     if (model.axisymmetric) this.#mirror();
     this.recolour();
   }
@@ -267,6 +273,36 @@ export class ModelScene {
     this.forces = new Points(geometry, this.forceMaterial);
     this.forces.frustumCulled = false;
     this.root.add(this.forces);
+  }
+
+  /** A ring around the place of the largest value, which shows through the model. */
+  #peak() {
+    const canvas = Object.assign(document.createElement("canvas"), { width: RING, height: RING });
+    const context = canvas.getContext("2d");
+    for (const [width, stroke] of [[14, "#ffffff"], [6, "#d6006e"]]) {
+      Object.assign(context, { lineWidth: width, strokeStyle: stroke });
+      context.beginPath();
+      context.arc(RING / 2, RING / 2, RING / 2 - 8, 0, 2 * Math.PI);
+      context.stroke();
+    }
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array(3), 3));
+    const map = new CanvasTexture(canvas);
+    map.colorSpace = SRGBColorSpace;
+    const material = new PointsMaterial({ size: 26, sizeAttenuation: false, map, transparent: true, depthTest: false });
+    this.peak = new Points(geometry, material);
+    this.peak.renderOrder = 10;
+    this.peak.frustumCulled = false;
+    this.root.add(this.peak);
+  }
+
+  /** Puts the ring at a place with a displacement, drawn with a factor; `null` hides it. */
+  point(peak, factor) {
+    this.peak.visible = Boolean(peak);
+    if (!peak) return;
+    const position = this.peak.geometry.getAttribute("position");
+    for (let i = 0; i < 3; i += 1) position.array[i] = peak.place[i] + factor * peak.moved[i];
+    position.needsUpdate = true;
   }
 
   /** The other half of a section through the axis. */

@@ -16,6 +16,9 @@ const SHOWN = 0.06;
 /** Relative displacement that is seen without magnification. */
 const SEEN = 0.02;
 
+/** Part of the largest value of all instants below which a value is rounding. */
+const ROUNDING = 1e-9;
+
 /** A round number near a factor: 1, 2 or 5 times a power of ten. */
 function round(factor) {
   const power = 10 ** Math.floor(Math.log10(factor));
@@ -51,6 +54,7 @@ class Viewer {
       field: this.instants.fields[0].id,
       range: "run",
       section: null,
+      peak: true,
       edges: !this.model.decimated_from,
     };
     this.controls = controls(this);
@@ -93,7 +97,11 @@ class Viewer {
     this.parts.mark(this.instants.touching(frame));
     const look = this.instants.look(field, this.choice.range === "run" ? null : frame);
     this.parts.paint(this.instants.values(field, frame), look);
-    this.legend(look);
+    const largest = Math.max(...this.instants.look(field, null).range.map(Math.abs));
+    const found = this.instants.peak(field, frame);
+    const peak = found && Math.abs(found.value) > ROUNDING * largest ? found : null;
+    this.parts.point(this.choice.peak ? peak : null, this.factor);
+    this.legend(look, peak);
     this.controls.at(still, frame);
     this.shared.set(still.time, this);
     this.render();
@@ -109,9 +117,17 @@ class Viewer {
     }
   }
 
-  legend(look) {
-    const place = document.getElementById("model-legend");
-    place.replaceChildren();
+  /** Colours by a field. */
+  colour(field) {
+    if (!this.instants.fields.some((f) => f.id === field)) return;
+    this.choice.field = field;
+    this.controls.coloured(field);
+    this.show();
+  }
+
+  legend(look, peak) {
+    const legend = document.getElementById("model-legend");
+    legend.replaceChildren();
     if (look.categories) {
       look.names.slice(0, 24).forEach((name, k) => {
         const entry = document.createElement("span");
@@ -119,16 +135,22 @@ class Viewer {
         swatch.className = "swatch";
         swatch.style.background = series(k);
         entry.append(swatch, ` ${name} `);
-        place.append(entry);
+        legend.append(entry);
       });
-      if (look.names.length > 24) place.append(`and ${look.names.length - 24} more`);
+      if (look.names.length > 24) legend.append(`and ${look.names.length - 24} more`);
       return;
     }
     const [low, high] = look.range;
     const bar = document.createElement("span");
     bar.className = "ramp";
     bar.style.background = gradient(look.map);
-    place.append(quantity(low, look.unit), bar, `${quantity(high, look.unit)} ${look.note ?? ""}`);
+    legend.append(quantity(low, look.unit), bar, `${quantity(high, look.unit)} ${look.note ?? ""}`);
+    if (!peak) return;
+    const place = document.createElement("span");
+    place.id = "model-peak";
+    const at = peak.place.slice(0, this.model.dimension).map((x) => quantity(x, "m"));
+    place.textContent = `◯ ${peak.word} at this instant: ${quantity(peak.value, look.unit)} at (${at.join(", ")})`;
+    legend.append(place);
   }
 
   /** Looks at the whole model from a side. */
@@ -147,42 +169,62 @@ class Viewer {
     this.orbit.enableRotate = this.model.dimension > 1;
     this.camera.lookAt(middle);
     this.camera.updateMatrixWorld();
-    this.fit(box);
+    // the middle of what is seen from there stands in the middle of the frame
+    const { low, high } = this.seen();
+    const right = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 0);
+    const up = new Vector3().setFromMatrixColumn(this.camera.matrixWorld, 1);
+    const shift = right.multiplyScalar((low[0] + high[0]) / 2).addScaledVector(up, (low[1] + high[1]) / 2);
+    this.camera.position.add(shift);
+    this.orbit.target.add(shift);
+    this.camera.updateMatrixWorld();
+    this.fit();
     this.orbit.update();
   }
 
-  /** The box around what is drawn, over all instants. */
-  box() {
-    const box = new Box3();
+  /** Calls with the places of all nodes at some instants. */
+  visit(call) {
     const place = new Vector3();
     const { x, frames } = this.instants;
     const step = Math.max(1, Math.floor(frames.length / 8));
     for (let k = 0; k < frames.length; k += step) {
       const u = this.instants.moved(k);
       for (let n = 0; n < x.length; n += 3) {
-        place.set(x[n] + this.factor * u[n], x[n + 1] + this.factor * u[n + 1], x[n + 2] + this.factor * u[n + 2]);
-        box.expandByPoint(place);
-        if (this.model.axisymmetric) box.expandByPoint(place.setX(-place.x));
+        const moved = [0, 1, 2].map((i) => x[n + i] + this.factor * u[n + i]);
+        call(place.set(...moved));
+        if (this.model.axisymmetric) call(place.set(-moved[0], moved[1], moved[2]));
       }
     }
+  }
+
+  /** The box around what is drawn, over all instants. */
+  box() {
+    const box = new Box3();
+    this.visit((place) => box.expandByPoint(place));
     this.bounds = box;
     return box;
   }
 
+  /** Extent of what is drawn along the axes of the camera, over all instants. */
+  seen() {
+    const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
+    this.visit((place) => {
+      const { x, y } = place.applyMatrix4(this.camera.matrixWorldInverse);
+      low[0] = Math.min(low[0], x);
+      low[1] = Math.min(low[1], y);
+      high[0] = Math.max(high[0], x);
+      high[1] = Math.max(high[1], y);
+    });
+    return { low, high };
+  }
+
   /** Fills the frame with the model. */
-  fit(box = this.bounds) {
+  fit() {
     const width = this.holder.clientWidth;
     const height = this.holder.clientHeight;
-    if (width === 0 || !box) return;
+    if (width === 0 || !this.bounds) return;
     this.renderer.setSize(width, height);
-    const reach = [0, 0];
-    const corner = new Vector3();
-    for (let k = 0; k < 8; k += 1) {
-      corner.set(k & 1 ? box.max.x : box.min.x, k & 2 ? box.max.y : box.min.y, k & 4 ? box.max.z : box.min.z);
-      corner.applyMatrix4(this.camera.matrixWorldInverse);
-      reach[0] = Math.max(reach[0], Math.abs(corner.x));
-      reach[1] = Math.max(reach[1], Math.abs(corner.y));
-    }
+    const { low, high } = this.seen();
+    const reach = [0, 1].map((i) => Math.max(Math.abs(low[i]), Math.abs(high[i])));
     const half = 1.08 * Math.max(reach[1], (reach[0] * height) / width, 1e-12);
     this.camera.top = half;
     this.camera.bottom = -half;

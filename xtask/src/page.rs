@@ -1,5 +1,5 @@
-//! Reports in a real browser: no error on the console, every plot drawn, the model turns, moves and is cut, and a browser without
-//! WebGL shows the static figures.
+//! Reports in a real browser: no error on the console, every plot drawn and its texts sound, the model moves, is coloured, marked and cut, and a
+//! browser without WebGL shows the static figures; pages of a comparison and a study, which fit narrow windows too.
 //!
 //! Where no browser is installed the check says so and is left out. `report/check.js` does what a reader does, inside of a copy of the page;
 //! nothing but the browser is needed.
@@ -23,6 +23,32 @@ const CASES: [&str; 5] = [
 /// The case that is opened once more without WebGL.
 const WITHOUT: &str = "block-drop";
 
+/// A comparison with curves that hide the others, and a study.
+const TABLES: [&[&str]; 2] = [
+    &[
+        "compare",
+        "cases/two-bars/case.toml",
+        "--with",
+        "theta",
+        "newmark",
+        "--law",
+        "velocity",
+    ],
+    &[
+        "study",
+        "cases/two-bars/case.toml",
+        "--vary",
+        "time.step.courant=1,0.5",
+    ],
+];
+
+/// Draws the model by the processor.
+const WEBGL: [&str; 3] = [
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+];
+
 /// Longest page, bytes.
 const BYTES: usize = 5_000_000;
 
@@ -31,6 +57,9 @@ const WATCH: &str = "<script>window.faults = [];
 addEventListener(\"error\", (e) => faults.push(`error: ${e.message}`));
 addEventListener(\"unhandledrejection\", (e) => faults.push(`rejection: ${e.reason}`));
 console.error = (...all) => faults.push(`console: ${all.join(\" \")}`);
+window.written = [];
+const write = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, ...all) { written.push(`${text}`); write.call(this, text, ...all); };
 </script>";
 
 const FLAGS: [&str; 11] = [
@@ -57,9 +86,11 @@ pub fn check(root: &Path) -> Vec<String> {
         return Vec::new();
     };
     let mut problems = Vec::new();
-    for case in CASES {
-        if let Err(problem) = of_case(root, browser, case) {
-            problems.push(format!("{case}: {problem}"));
+    let cases = CASES.map(|case| (case, of_case(root, browser, case)));
+    let tables = TABLES.map(|arguments| (arguments[0], of_table(root, browser, arguments)));
+    for (name, outcome) in cases.into_iter().chain(tables) {
+        if let Err(problem) = outcome {
+            problems.push(format!("{name}: {problem}"));
         }
     }
     problems
@@ -74,45 +105,11 @@ fn of_case(root: &Path, browser: &str, case: &str) -> Result<(), String> {
     let folder = root.join("target/page");
     let results = folder.join(format!("{case}.carom"));
     let input = format!("cases/{case}/case.toml");
-    let status = Command::new("cargo")
-        .args([
-            "run",
-            "--release",
-            "--quiet",
-            "--",
-            "run",
-            "--quiet",
-            &input,
-            "--results",
-        ])
-        .arg(&results)
-        .current_dir(root)
-        .stdout(std::process::Stdio::null())
-        .status()
-        .map_err(|cause| format!("cargo cannot be started: {cause}"))?;
-    if !status.success() {
-        return Err(format!("the run failed: {status}"));
-    }
-    let page = read(&results.join("report.html"))?;
-    if page.len() > BYTES {
-        return Err(format!(
-            "its page has {} bytes; at most {BYTES}",
-            page.len()
-        ));
-    }
+    let page = made(root, &["run", "--quiet", &input], &results)?;
     println!("{case}: {} kB", page.len() / 1000);
     let script = read(&root.join("report/check.js"))?;
-    let webgl = [
-        "--use-gl=angle",
-        "--use-angle=swiftshader",
-        "--enable-unsafe-swiftshader",
-    ];
-    open(
-        (browser, &webgl),
-        (&folder, case),
-        &page,
-        &script.replace("WITHOUT_WEBGL", "false"),
-    )?;
+    let with = script.replace("WITHOUT_WEBGL", "false");
+    open((browser, &WEBGL), (&folder, case), &page, &with)?;
     match case == WITHOUT {
         true => {
             let script = script.replace("WITHOUT_WEBGL", "true");
@@ -125,6 +122,45 @@ fn of_case(root: &Path, browser: &str, case: &str) -> Result<(), String> {
             outcome.map_err(|problem| format!("without WebGL: {problem}"))
         }
         false => Ok(()),
+    }
+}
+
+/// The page of a comparison or a study, in a wide and in a narrow window.
+fn of_table(root: &Path, browser: &str, arguments: &[&str]) -> Result<(), String> {
+    let folder = root.join("target/page");
+    let name = arguments[0];
+    let page = made(root, arguments, &folder.join(format!("{name}.carom")))?;
+    println!("{name}: {} kB", page.len() / 1000);
+    let script = read(&root.join("report/check.js"))?.replace("WITHOUT_WEBGL", "false");
+    for window in ["--window-size=1200,900", "--window-size=500,900"] {
+        let flags = [&WEBGL[..], &[window]].concat();
+        open((browser, &flags), (&folder, name), &page, &script)
+            .map_err(|problem| format!("{window}: {problem}"))?;
+    }
+    Ok(())
+}
+
+/// The page that a command of the program writes.
+fn made(root: &Path, arguments: &[&str], results: &Path) -> Result<String, String> {
+    let status = Command::new("cargo")
+        .args(["run", "--release", "--quiet", "--"])
+        .args(arguments)
+        .arg("--results")
+        .arg(results)
+        .current_dir(root)
+        .stdout(std::process::Stdio::null())
+        .status()
+        .map_err(|cause| format!("cargo cannot be started: {cause}"))?;
+    if !status.success() {
+        return Err(format!("the run failed: {status}"));
+    }
+    let page = read(&results.join("report.html"))?;
+    match page.len() > BYTES {
+        true => Err(format!(
+            "its page has {} bytes; at most {BYTES}",
+            page.len()
+        )),
+        false => Ok(page),
     }
 }
 

@@ -93,6 +93,9 @@ enum Command {
         /// Use the small sizes of the quick tests
         #[arg(long)]
         quick: bool,
+        /// Write a page with the problem, the reference and the errors of each check to this file
+        #[arg(long, value_name = "FILE.html")]
+        report: Option<PathBuf>,
     },
     /// Print the completion of this command for a shell: `carom completion bash > ~/.local/share/bash-completion/completions/carom`
     Completion {
@@ -147,7 +150,11 @@ fn obey(arguments: Arguments) -> u8 {
         Command::Convert { from, to } => convert(&from, &to),
         Command::Schema { reference } => schema(reference),
         Command::New { template, file } => new::new(template.as_deref(), &file),
-        Command::Verify { name, quick } => verify(name.as_deref(), quick),
+        Command::Verify {
+            name,
+            quick,
+            report,
+        } => verify(name.as_deref(), quick, report.as_deref()),
         Command::Completion { shell } => {
             let command = &mut Arguments::command();
             clap_complete::generate(shell, command, "carom", &mut terminal::StandardOutput);
@@ -210,22 +217,31 @@ fn schema(reference: bool) -> u8 {
     }
 }
 
-fn verify(name: Option<&str>, quick: bool) -> u8 {
+fn verify(name: Option<&str>, quick: bool, report: Option<&Path>) -> u8 {
     let size = if quick {
         carom_verification::Size::Quick
     } else {
         carom_verification::Size::Full
     };
-    match carom_verification::verify(name, size, &mut terminal::StandardOutput) {
-        Ok(verdict) if verdict.holds() => 0,
-        Ok(verdict) if verdict.checks == 0 => {
-            err!("error: no check of this name");
-            BAD_INPUT
-        }
-        Ok(_) => BAD,
+    let found = carom_verification::verify(name, size, &mut terminal::StandardOutput);
+    let (verdict, made) = match found {
+        Ok(found) => found,
         Err(error) => {
             err!("error: {error}");
-            FAILED
+            return FAILED;
         }
+    };
+    if verdict.checks == 0 {
+        err!("error: no check of this name");
+        return BAD_INPUT;
     }
+    if let Some(path) = report {
+        let page = carom_verification::page(&made, &verdict);
+        if let Err(error) = carom_output::atomic::write_text(path, &page) {
+            err!("error: {error}");
+            return FAILED;
+        }
+        out!("report: {}", path.display());
+    }
+    if verdict.holds() { 0 } else { BAD }
 }

@@ -1,4 +1,4 @@
-//! Files with some bytes overwritten.
+//! What must hold of a mesh that is read from a damaged file.
 
 use carom_mesh::Mesh;
 
@@ -19,26 +19,4 @@ pub fn is_consistent(mesh: &Mesh) -> bool {
         })
     });
     finite && known && groups
-}
-
-/// A pseudo-random number below `n` (xorshift, Marsaglia 2003).
-pub fn draw(state: &mut u64, n: usize) -> usize {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    (*state % n as u64) as usize
-}
-
-/// A content with one to three bytes overwritten.
-pub fn damaged(content: &[u8], state: &mut u64) -> Vec<u8> {
-    let mut content = content.to_vec();
-    for _ in 0..=draw(state, 3) {
-        let place = draw(state, content.len());
-        content[place] = match draw(state, 3) {
-            0 => content[place] ^ (1 << draw(state, 8)),
-            1 => draw(state, 256) as u8,
-            _ => b"0123456789-.e \n$"[draw(state, 16)],
-        };
-    }
-    content
 }

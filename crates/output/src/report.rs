@@ -60,6 +60,7 @@ impl Report<'_> {
         let page = environment.get_template("report.html")?.render(context! {
             summary => Serde(self.summary),
             impacts => Serde(self.impacts),
+            many => self.summary.contacts.values().any(|contact| contact.impacts > 1),
             hidden => impacts.saturating_sub(self.impacts.len()),
             figures,
             case => self.case,
@@ -117,16 +118,27 @@ fn code(message: &str) -> String {
     let mut html = String::new();
     let parts: Vec<&str> = message.split('`').collect();
     for (k, part) in parts.iter().enumerate() {
-        let part = HtmlEscape(part);
+        // no line begins with the sign of a per cent
+        let part = part.replace(" %", "\u{a0}%");
+        let part = HtmlEscape(&part);
         let _ = match k {
             0 => write!(html, "{part}"),
             // a backtick without its other one stands as it is
             k if k % 2 == 1 && k + 1 == parts.len() => write!(html, "`{part}"),
-            k if k % 2 == 1 => write!(html, "<code>{part}</code>"),
+            k if k % 2 == 1 => write!(html, "<code>{}</code>", options(&part.to_string())),
             _ => write!(html, "{part}"),
         };
     }
     html
+}
+
+/// Options of a command in words that no line ends within: a browser breaks lines after their dashes.
+fn options(code: &str) -> String {
+    let words = code.split(' ').map(|word| match word.starts_with("--") {
+        true => format!("<span class=\"option\">{word}</span>"),
+        false => word.to_owned(),
+    });
+    words.collect::<Vec<_>>().join(" ")
 }
 
 fn show(value: &Value, text: impl Fn(f64) -> String) -> String {
@@ -164,6 +176,11 @@ mod tests {
             ("run `carom study` now", "run <code>carom study</code> now"),
             ("`a<b` and `c`", "<code>a&lt;b</code> and <code>c</code>"),
             ("one ` alone", "one ` alone"),
+            (
+                "`carom study --vary a=1`",
+                "<code>carom study <span class=\"option\">--vary</span> a=1</code>",
+            ),
+            ("7 % of 9", "7\u{a0}% of 9"),
             ("", ""),
         ] {
             assert_eq!(code(message), html);

@@ -3,7 +3,7 @@
 //! An unstructured grid of version 2.0 with the group `Steps`: arrays of all instants one after the other, and where each begins. What
 //! does not change from one instant to the next stands there once. The file is made of the `.vtu` files of the instants, which stay
 //! beside it: it has the same numbers, and a run that is killed has lost nothing that the `.vtu` files do not have. All arrays are in
-//! memory while it is written.
+//! memory while it is written: hdf5-pure 0.47 appends in place to datasets of rank one, and vectors have rank two.
 //!
 //! Source: VTKHDF file format, specification, UnstructuredGrid and temporal data (docs.vtk.org).
 

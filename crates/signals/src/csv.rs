@@ -136,6 +136,8 @@ fn name_and_unit(cell: &str) -> (String, Option<String>) {
 
 #[cfg(test)]
 mod tests {
+    use carom_testing::damage::damaged;
+
     use super::*;
 
     #[test]
@@ -189,5 +191,28 @@ mod tests {
         ));
         assert_eq!(Table::parse("# nothing\n"), Err(Error::NoRows));
         assert_eq!(Table::parse("t,a\n"), Err(Error::NoRows));
+    }
+
+    #[test]
+    fn damaged_tables_are_refused_or_have_columns_of_finite_numbers() {
+        let text = b"# ground\nt [ms]; a [m/s^2]; b\n0; 1.5; 1\n10; -2e-1; 2\n\n20; 3; 4\n";
+        let (mut state, mut refused) = (5, 0);
+        for _ in 0..20_000 {
+            let content = damaged(text, &mut state);
+            let Ok(table) = Table::parse(&String::from_utf8_lossy(&content)) else {
+                refused += 1;
+                continue;
+            };
+            for name in table.names() {
+                match table.column(name) {
+                    Ok(column) => {
+                        assert_eq!(column.lines.len(), column.values.len());
+                        assert!(column.values.iter().all(|value| value.is_finite()));
+                    }
+                    Err(_) => refused += 1,
+                }
+            }
+        }
+        assert!((1000..60_000).contains(&refused), "{refused}");
     }
 }

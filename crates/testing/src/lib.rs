@@ -1,6 +1,7 @@
-//! What the tests of several crates share: an allocator that counts, random numbers from a seed. A dev-dependency only.
+//! What the tests of several crates share: an allocator that counts, random numbers from a seed, damaged files. A dev-dependency only.
 
 mod allocations;
+pub mod damage;
 mod random;
 
 pub use allocations::{Counter, allocations, held};

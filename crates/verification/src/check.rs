@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::Error;
 use crate::kind::{Counts, Kind};
+use crate::words::words;
 
 /// How large the models of a check are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +62,7 @@ pub enum Expected {
 impl Row {
     fn new(quantity: impl Into<String>, value: f64, expected: Expected) -> Row {
         Row {
-            quantity: quantity.into(),
+            quantity: words(&quantity.into()),
             value,
             expected,
             kind: Kind::ClosedForm,
@@ -208,7 +209,7 @@ impl fmt::Display for Expected {
 }
 
 /// Six digits; exponents only where they are needed.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     let size = value.abs();
     if value == value.trunc() && size < 1e6 {
         format!("{value}")
@@ -264,7 +265,26 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Runs these checks, or those of them whose name contains `filter`, and writes one line per row.
+/// A check that was run.
+#[derive(Debug)]
+pub struct Made {
+    /// The check.
+    pub check: Check,
+    /// Its rows, or why it could not be made.
+    pub rows: Result<Vec<Row>, Error>,
+    /// Wall time, s.
+    pub seconds: f64,
+}
+
+impl Made {
+    /// Whether it could be made and all its rows hold.
+    pub fn holds(&self) -> bool {
+        let rows = self.rows.as_ref();
+        rows.is_ok_and(|rows| rows.iter().all(Row::holds))
+    }
+}
+
+/// Runs these checks, or those of them whose name contains `filter`, and writes one line per row; returns what each found too.
 ///
 /// # Errors
 /// Only of `out`; a check that cannot be made is written and counted as failed.
@@ -273,35 +293,38 @@ pub fn verify(
     filter: Option<&str>,
     size: Size,
     out: &mut dyn Write,
-) -> io::Result<Verdict> {
+) -> io::Result<(Verdict, Vec<Made>)> {
     let mut verdict = Verdict::default();
+    let mut made = Vec::new();
     let wanted = |check: &&Check| filter.is_none_or(|part| check.name.contains(part));
     for check in checks.iter().filter(wanted) {
         writeln!(out, "{}: {}", check.name, check.fact)?;
         let begin = Instant::now();
         verdict.checks += 1;
-        match (check.run)(size) {
+        let rows = (check.run)(size);
+        match &rows {
             Ok(rows) => {
-                for row in &rows {
+                for row in rows {
                     writeln!(out, "  {row}")?;
                 }
-                verdict.count(&rows);
+                verdict.count(rows);
             }
             Err(error) => {
                 writeln!(out, "  FAIL  could not be made: {error}")?;
                 verdict.unmade += 1;
             }
         }
-        writeln!(
-            out,
-            "  {} in {:.1} s",
-            check.name,
-            begin.elapsed().as_secs_f64()
-        )?;
+        let seconds = begin.elapsed().as_secs_f64();
+        writeln!(out, "  {} in {seconds:.1} s", check.name)?;
         out.flush()?;
+        made.push(Made {
+            check: *check,
+            rows,
+            seconds,
+        });
     }
     writeln!(out, "{verdict}")?;
-    Ok(verdict)
+    Ok((verdict, made))
 }
 
 #[cfg(test)]
@@ -379,7 +402,9 @@ mod tests {
         let checks = [check("one", rows), check("two", failing)];
         let run = |filter| {
             let mut out = Vec::new();
-            let verdict = verify(&checks, filter, Size::Quick, &mut out).unwrap();
+            let (verdict, made) = verify(&checks, filter, Size::Quick, &mut out).unwrap();
+            assert_eq!(made.len(), verdict.checks);
+            assert!(!made.iter().any(Made::holds));
             let text = String::from_utf8(out).unwrap();
             (verdict, text.lines().last().unwrap().to_string())
         };
@@ -404,7 +429,7 @@ mod tests {
     #[test]
     fn a_check_that_only_shows_holds() {
         let checks = [check("one", |_| Ok(vec![Row::shown("d", 3.0)]))];
-        let verdict = verify(&checks, None, Size::Quick, &mut Vec::new()).unwrap();
+        let (verdict, _) = verify(&checks, None, Size::Quick, &mut Vec::new()).unwrap();
         assert!(verdict.holds());
     }
 }

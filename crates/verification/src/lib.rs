@@ -22,11 +22,13 @@ mod hairpin;
 mod hertz;
 mod kept;
 mod kind;
+mod page;
 mod plastic_wave;
 mod plates;
 mod points;
 mod pounding;
 mod repeated;
+mod words;
 
 mod adaptive;
 mod adaptive_bars;
@@ -160,7 +162,7 @@ mod zones_in_contact;
 
 use std::io::{self, Write};
 
-pub use check::{Check, Expected, Row, Size, Verdict};
+pub use check::{Check, Expected, Made, Row, Size, Verdict};
 pub use error::Error;
 pub use kind::{Counts, Kind};
 
@@ -170,6 +172,11 @@ macro_rules! registry {
         /// All cases.
         pub fn checks() -> Vec<Check> {
             vec![$($case::CHECK),*]
+        }
+
+        /// Names of all cases with the texts of their files.
+        fn sources() -> Vec<(&'static str, &'static str)> {
+            vec![$(($case::CHECK.name, include_str!(concat!(stringify!($case), ".rs")))),*]
         }
 
         #[cfg(test)]
@@ -315,12 +322,26 @@ registry! {
     zones_in_contact
 }
 
-/// Runs all cases, or those whose name contains `filter`, and writes one line per row.
+/// Runs all cases, or those whose name contains `filter`, and writes one line per row; returns what each found too.
 ///
 /// # Errors
 /// Only of `out`; a case that cannot be computed is written and counted as failed.
-pub fn verify(filter: Option<&str>, size: Size, out: &mut dyn Write) -> io::Result<Verdict> {
+pub fn verify(
+    filter: Option<&str>,
+    size: Size,
+    out: &mut dyn Write,
+) -> io::Result<(Verdict, Vec<Made>)> {
     check::verify(&checks(), filter, size, out)
+}
+
+/// What cases found as a page of HTML, with the problem, the reference and the reason for the tolerance of each.
+pub fn page(made: &[Made], verdict: &Verdict) -> String {
+    let sources = sources();
+    let head = |name: &str| {
+        let source = sources.iter().find(|(other, _)| *other == name);
+        source.map_or(String::new(), |(_, source)| page::head(source))
+    };
+    page::page(made, verdict, head)
 }
 
 #[test]
@@ -331,6 +352,9 @@ fn names_differ_and_facts_are_stated() {
     names.dedup();
     assert_eq!(names.len(), count);
     assert!(checks().iter().all(|check| !check.fact.is_empty()));
+    // each file states its problem
+    let states = |(_, source): &(&str, &str)| page::head(source).len() > 60;
+    assert!(sources().iter().all(states));
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 mod checks;
 mod compare;
+mod damaged;
 mod defaults;
 mod events;
 mod general;

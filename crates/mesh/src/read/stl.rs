@@ -181,6 +181,8 @@ impl Surface {
 
 #[cfg(test)]
 mod tests {
+    use carom_testing::damage::damaged;
+
     use super::*;
 
     /// The corners of a tetrahedron's faces, outward.
@@ -282,5 +284,23 @@ mod tests {
                 .to_string();
             assert!(error.contains(told), "{error}");
         }
+    }
+
+    #[test]
+    fn damaged_files_are_refused_or_have_triangles_of_their_nodes() {
+        let (mut state, mut refused) = (3, 0);
+        for content in [text(["lower part", ""]).into_bytes(), binary("head")] {
+            for _ in 0..10_000 {
+                match read(&damaged(&content, &mut state)) {
+                    Err(_) => refused += 1,
+                    Ok(mesh) => {
+                        let nodes = mesh.nodes.len() as u32;
+                        assert!(mesh.nodes.iter().flatten().all(|x| x.is_finite()));
+                        assert!(mesh.blocks[0].nodes.iter().all(|node| *node < nodes));
+                    }
+                }
+            }
+        }
+        assert!((1000..20_000).contains(&refused), "{refused}");
     }
 }

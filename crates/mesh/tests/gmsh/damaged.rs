@@ -1,7 +1,9 @@
 //! Files cut and overwritten anywhere: an error or a sound mesh, never a panic.
 
 use super::{FORMATS, MESHES, bytes_of, parse};
-use crate::damage::{damaged, is_consistent};
+use carom_testing::damage::damaged;
+
+use crate::damage::is_consistent;
 
 #[test]
 fn a_file_cut_at_any_byte_is_refused() {
@@ -20,7 +22,7 @@ fn a_file_cut_at_any_byte_is_refused() {
 }
 
 #[test]
-fn overwritten_bytes_give_an_error_or_a_consistent_mesh() {
+fn damaged_files_give_an_error_or_a_consistent_mesh() {
     let mut state = 0x2545_f491_4f6c_dd1d;
     for (mesh, format) in MESHES[..4]
         .iter()

@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 
 use carom_mesh::{Mesh, read};
 
-use crate::damage::{damaged, is_consistent};
+use carom_testing::damage::damaged;
+
+use crate::damage::is_consistent;
 
 fn path(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::compare::{Comparison, Done};
 use crate::page::Data;
 use crate::page::block::Block;
-use crate::page::draft::{self, Line, draft, line, zipped};
+use crate::page::draft::{self, Line, draft, line, of_runs, zipped};
 use crate::page::schema::{Page, Quantity, SCHEMA};
 use crate::plot::{Axis, Curve, Figure, Panel, Role};
 use crate::results::exact::{Polyline, force_curve, motion_curves};
@@ -95,8 +95,12 @@ pub(crate) fn page(comparison: &Comparison) -> Data {
         for (title, curves, exact) in parts.iter().filter(|(_, curves, _)| !curves.is_empty()) {
             let exact = exact.iter();
             let mut lines: Vec<Line> = exact.map(|c| line("exact", "exact", zipped(c))).collect();
-            let computed = curves.iter();
-            lines.extend(computed.map(|(name, c)| line(*name, "computed", zipped(c))));
+            let computed = curves.iter().map(|(name, curve)| {
+                let run = done.iter().find(|(other, _)| other == name);
+                let is_bad = run.is_some_and(|(_, done)| done.is_bad());
+                (line(*name, "computed", zipped(curve)), is_bad)
+            });
+            lines.extend(of_runs(computed.collect()));
             drafts.push(draft("plot-comparison", title, (quantity, unit), lines));
         }
     }

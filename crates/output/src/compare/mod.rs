@@ -119,9 +119,8 @@ impl Variant {
     pub fn verdict(&self) -> (&'static str, String) {
         match &self.outcome {
             Outcome::Done(done) => {
-                let verdict = &done.summary.verdict;
+                let (verdict, grade) = (&done.summary.verdict, done.grade());
                 let line = done.line.as_ref();
-                let grade = line.map_or(verdict.grade, |line| verdict.grade.max(line.grade));
                 let line = line
                     .filter(|line| line.grade != Grade::Good)
                     .map(Line::text);
@@ -144,6 +143,18 @@ impl Done {
             errors: Errors::default(),
             line: None,
         }
+    }
+
+    /// The worse of the grade of the run and that of its distance from the reference.
+    fn grade(&self) -> Grade {
+        let own = self.summary.verdict.grade;
+        let line = self.line.as_ref();
+        line.map_or(own, |line| own.max(line.grade))
+    }
+
+    /// Whether the run is graded bad.
+    pub(crate) fn is_bad(&self) -> bool {
+        self.grade() == Grade::Bad
     }
 
     /// The contact that is compared.

@@ -16,6 +16,8 @@ pub(crate) struct Line {
     /// As of [`Curve`].
     pub(crate) role: &'static str,
     pub(crate) points: Vec<(f64, f64)>,
+    /// As of [`Curve`].
+    pub(crate) hidden: bool,
 }
 
 /// A plot with curves before they are thinned.
@@ -54,7 +56,18 @@ pub(crate) fn line(name: impl Into<String>, role: &'static str, points: Vec<(f64
         name: name.into(),
         role,
         points,
+        hidden: false,
     }
+}
+
+/// Curves of runs, each with whether its run is graded bad: those hide the others, and are drawn only on demand unless there are no others.
+pub(crate) fn of_runs(lines: Vec<(Line, bool)>) -> impl Iterator<Item = Line> {
+    let has_others = lines.iter().any(|(_, is_bad)| !is_bad);
+    let one = move |(line, is_bad)| Line {
+        hidden: is_bad && has_others,
+        ..line
+    };
+    lines.into_iter().map(one)
 }
 
 /// Points from abscissae and ordinates.
@@ -76,6 +89,7 @@ pub(crate) fn plots(mut drafts: Vec<Draft>, block: &mut Block) -> Vec<Plot> {
             Curve {
                 name: line.name.clone(),
                 role: line.role,
+                hidden: line.hidden,
                 x: block.reals(points.iter().map(|p| p.0)),
                 y: block.reals(points.iter().map(|p| p.1)),
             }

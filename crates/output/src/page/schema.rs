@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::page::block::Array;
 
 /// The version of what is written here; `report/src/data.js` has the same.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// The head of a page.
 #[derive(Debug, Serialize)]
@@ -82,6 +82,9 @@ pub struct Curve {
     pub name: String,
     /// `computed`, `exact`, `filtered`, or `instants` for single values.
     pub role: &'static str,
+    /// Whether it is drawn only when its name is clicked.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub hidden: bool,
     /// Abscissae, ascending; two equal ones are a jump.
     pub x: Array,
     /// Ordinates.
@@ -227,6 +230,17 @@ pub struct Field {
     pub signed: bool,
 }
 
+/// The largest value of a field at cells, which may be inside of the model.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Peak {
+    /// In the unit of the field.
+    pub value: f64,
+    /// Middle of the cell in the reference configuration, m.
+    pub place: [f64; 3],
+    /// Displacement of the middle, m.
+    pub moved: [f64; 3],
+}
+
 /// An instant.
 #[derive(Debug, Serialize)]
 pub struct Frame {
@@ -240,6 +254,8 @@ pub struct Frame {
     pub moved: [Array; 3],
     /// The fields that change, by their `id`; `status`: 0 no contact point, 1 open, 2 closed, 3 slipping.
     pub values: BTreeMap<&'static str, Array>,
+    /// The largest values among all cells of the model, by the `id` of the field.
+    pub largest: BTreeMap<&'static str, Peak>,
     /// The upper three rows of the matrix of each obstacle, empty if none moves.
     pub poses: Vec<[f64; 12]>,
     /// Whether each triangle is there; none if all are.

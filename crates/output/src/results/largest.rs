@@ -4,8 +4,9 @@ use carom_dynamics::System;
 
 use crate::maxima::{Maxima, Maximum};
 use crate::results::Results;
+use crate::results::cells::middle;
 use crate::results::page::model;
-use crate::results::stills::Still;
+use crate::results::stills::{Largest, Still};
 
 /// Those of a run that has ended.
 pub(crate) fn maxima(results: &Results) -> Maxima {
@@ -24,15 +25,13 @@ fn of_cells(results: &Results, stills: &[&Still], field: usize) -> Option<Maximu
     let (system, seen) = (&results.system, &results.stills.seen);
     let values = stills.iter();
     let values = values.filter_map(|still| Some((still.largest[field]?, still.time)));
-    let best = values.reduce(|best, other| if other.0.0 > best.0.0 { other } else { best });
-    let ((value, cell), time) = best.filter(|best| best.0.0 > 0.0)?;
-    let mut elements = system.bodies.iter().flat_map(|body| body.cells());
-    let nodes = system.mesh.element_nodes(*elements.nth(cell as usize)?);
-    let count = nodes.len() as f64;
-    let middle = nodes.iter().fold([0.0; 3], |sum, node| {
-        let x = system.mesh.nodes[*node as usize];
-        [0, 1, 2].map(|i| sum[i] + x[i] / count)
-    });
+    let larger = |best: (Largest, f64), other: (Largest, f64)| match other.0.value > best.0.value {
+        true => other,
+        false => best,
+    };
+    let best = values.reduce(larger).filter(|best| best.0.value > 0.0);
+    let (Largest { value, cell, .. }, time) = best?;
+    let middle = middle(system, cell)?;
     let body = seen.body_of_cell[cell as usize] as usize;
     Some(maximum(system, (value, time), (body, &middle)))
 }

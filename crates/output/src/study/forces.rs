@@ -2,7 +2,7 @@
 
 use crate::compare::{Done, StepForce};
 use crate::page::block::Block;
-use crate::page::draft::{self, draft, line, zipped};
+use crate::page::draft::{self, draft, line, of_runs, zipped};
 use crate::page::schema::{Page, SCHEMA};
 use crate::page::{self, Data};
 use crate::plot::{Axis, Curve, Figure, Panel, Role};
@@ -60,14 +60,17 @@ impl Study {
     /// The plot of the page: the forces of all runs, that which a fit wants under them.
     pub(crate) fn plots(&self) -> Data {
         let done = self.runs.iter();
-        let done = done.filter_map(|run| Some((&run.variant.name, drawn(run.variant.done()?)?)));
-        let computed = done.map(|(name, curve)| line(name.clone(), "computed", zipped(&curve)));
+        let computed = done.filter_map(|run| {
+            let (name, done) = (run.variant.name.clone(), run.variant.done()?);
+            let line = line(name, "computed", zipped(&drawn(done)?));
+            Some((line, done.is_bad()))
+        });
         let wanted = self.wanted.as_ref().map(StepForce::curve);
         let wanted = wanted
             .iter()
             .map(|curve| line("wanted", "exact", zipped(curve)));
         let title = self.contact().map(|name| format!("Contact {name}"));
-        let lines = wanted.chain(computed).collect();
+        let lines = wanted.chain(of_runs(computed.collect())).collect();
         let drafts = title.map(|title| draft("plot-study", title, ("contact force", "N"), lines));
         let ends = self.runs.iter().filter_map(|run| run.variant.done());
         let mut block = Block::default();

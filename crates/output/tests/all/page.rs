@@ -212,4 +212,29 @@ fn the_page_of_a_block_has_its_surface_and_the_motion_of_its_nodes() {
         let closed = status.iter().filter(|status| **status >= 2.0).count();
         assert_eq!(closed, reports[row].contacts[0].closed);
     }
+    // the largest stress of all cells is that of a drawn one or of one inside, and the instant called after it has the largest of all
+    let largest = |frame: &Value| {
+        frame["largest"]["von_mises"]["value"]
+            .as_f64()
+            .unwrap_or(0.0)
+    };
+    for frame in model["frames"].as_array().unwrap() {
+        let array = &frame["values"]["von_mises"];
+        let drawn = page.numbers(array).into_iter().fold(0.0, f64::max);
+        let level = array["high"].as_f64().unwrap() / array["most"].as_f64().unwrap();
+        assert!(largest(frame) >= drawn - level, "{drawn}");
+        assert!(largest(frame) <= largest(page.frame("largest stress")));
+    }
+    let place = &page.frame("largest stress")["largest"]["von_mises"]["place"];
+    // the middle of one of the cells, whose sides are a quarter of the block
+    let x = place
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|x| x.as_f64().unwrap());
+    let size = page.numbers(&model["x"]).into_iter().fold(0.0, f64::max);
+    for x in x {
+        let middle = 4.0 * x / size - 0.5;
+        assert!((middle - middle.round()).abs() < 0.05, "{x}");
+    }
 }

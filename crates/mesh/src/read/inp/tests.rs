@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use carom_elements::Kind;
+use carom_testing::damage::damaged;
 
 use super::parse;
-use crate::random::Random;
 use crate::{Mesh, Surface};
 
 /// Two hexahedra along x, as Abaqus writes them, with a comment, a line that goes on, sets and surfaces.
@@ -227,19 +227,9 @@ fn what_is_wrong_is_told_with_its_line() {
 /// No panic and no endless memory, whatever bytes change.
 #[test]
 fn damaged_files_are_refused_or_read() {
-    let mut random = Random::new(7);
-    let (mut refused, bytes) = (0, BLOCK.as_bytes());
+    let (mut state, mut refused) = (7, 0);
     for _ in 0..20_000 {
-        let mut damaged = bytes.to_vec();
-        for _ in 0..3 {
-            let at = (random.unit() * bytes.len() as f64) as usize;
-            let at = at.min(damaged.len() - 1);
-            match (3.0 * random.unit()) as usize {
-                0 => damaged[at] = (256.0 * random.unit()) as u8,
-                1 => damaged.truncate(at.max(1)),
-                _ => damaged.insert(at, b','),
-            }
-        }
+        let damaged = damaged(BLOCK.as_bytes(), &mut state);
         refused += usize::from(parse(Path::new("part.inp"), &damaged).is_err());
     }
     assert!((1000..20_000).contains(&refused), "{refused}");

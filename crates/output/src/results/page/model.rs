@@ -6,8 +6,9 @@ use carom_contact::Target;
 use carom_dynamics::System;
 
 use crate::page::block::{Array, Block, COARSE, FINE};
-use crate::page::schema::{Field, Frame, Model, Obstacle};
+use crate::page::schema::{Field, Frame, Model, Obstacle, Peak};
 use crate::results::Results;
+use crate::results::cells::middle;
 use crate::results::outlines::size;
 use crate::results::page::chosen::Chosen;
 use crate::results::page::obstacles::{self, Near};
@@ -52,7 +53,7 @@ pub(crate) fn instants(results: &Results) -> Vec<(&Still, Vec<&'static str>)> {
             .1
             .push(kind);
     }
-    let stress = |still: &Still| still.largest[0].map_or(0.0, |(stress, _)| stress);
+    let stress = |still: &Still| still.largest[0].map_or(0.0, |largest| largest.value);
     let stressed = of_step
         .values()
         .map(|(still, _)| (still.step, stress(still)));
@@ -213,7 +214,8 @@ fn extremes(system: &System, seen: &Seen, stills: &[&Still]) -> BTreeSet<u32> {
     let cells = stills
         .iter()
         .flat_map(|still| still.largest.iter().flatten());
-    let nodes = cells.flat_map(|(_, cell)| system.mesh.element_nodes(*elements[*cell as usize]));
+    let nodes =
+        cells.flat_map(|largest| system.mesh.element_nodes(*elements[largest.cell as usize]));
     let places = nodes.filter_map(|node| seen.node(system.number[*node as usize]));
     places.map(|place| place as u32).collect()
 }
@@ -313,9 +315,25 @@ fn frame(
         offsets,
         moved,
         values,
+        largest: peaks(system, still),
         poses: poses(system, still.time),
         visible: None,
     }
+}
+
+/// The largest stress and plastic strain of all cells, those inside included.
+fn peaks(system: &System, still: &Still) -> BTreeMap<&'static str, Peak> {
+    let fields = ["von_mises", "plastic"].into_iter().zip(&still.largest);
+    let found = fields.filter_map(|(id, largest)| {
+        let largest = largest.filter(|largest| largest.value > 0.0)?;
+        let peak = Peak {
+            value: largest.value,
+            place: middle(system, largest.cell)?,
+            moved: largest.moved,
+        };
+        Some((id, peak))
+    });
+    found.collect()
 }
 
 /// The obstacles in the order of their contacts, as many as are drawn.

@@ -187,11 +187,16 @@ fn motions(results: &Results) -> Vec<Draft> {
     });
     let contact = &results.system.contacts[point.contact].name;
     let one = |(order, (what, unit)): (usize, (&'static str, &'static str))| {
+        let sides = point.sides.iter();
         let mut lines: Vec<Line> = exact
             .iter()
-            .map(|motion| line("exact", "exact", zipped(&motion[order])))
+            .zip(sides.clone())
+            .map(|(motion, (side, _))| {
+                let name = format!("{side}, exact");
+                line(name, "exact", zipped(&motion[order]))
+            })
             .collect();
-        let sides = point.sides.iter().zip(traces);
+        let sides = sides.zip(traces);
         lines.extend(sides.map(|((name, _), motion)| computed(name, &motion[order])));
         let title = format!("Contact {contact}: {what} of its middle points along the normal");
         draft("plot-motion", title, (what, unit), lines)

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::form::percent;
 use crate::maxima::{Maxima, Maximum};
-use crate::plot::quantity;
+use crate::plot::{quantity, scientific};
 use crate::results::Results;
 use crate::results::outlines::size;
 use crate::summary::{Contact, Energy, Summary};
@@ -26,6 +26,10 @@ pub struct Tile {
     pub section: &'static str,
     /// `good`, `look` or `bad` of the verdict, else empty.
     pub grade: &'static str,
+    /// The instant that the model is to show, s.
+    pub time: Option<f64>,
+    /// The field that the model is to be coloured by, else empty.
+    pub field: &'static str,
 }
 
 fn tile(label: &'static str, value: String, note: String, section: &'static str) -> Tile {
@@ -35,6 +39,8 @@ fn tile(label: &'static str, value: String, note: String, section: &'static str)
         note,
         section,
         grade: "",
+        time: None,
+        field: "",
     }
 }
 
@@ -100,14 +106,17 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
     });
     let steps = format!("{at}of a single step{}", mean.unwrap_or_default());
     let peak = quantity(contact.peak_force, "N");
-    let mut tiles = vec![tile(
-        "Peak force",
-        peak,
-        format!("{of}{steps}"),
-        "plot-force",
-    )];
+    let mut tiles = vec![Tile {
+        time: record.map(|record| record.peak_time),
+        ..tile("Peak force", peak, format!("{of}{steps}"), "plot-force")
+    }];
     if let Some(impulse) = contact.impulse {
-        let note = format!("{of}{}", closed(results, contact));
+        let all = summary.contacts.values().filter_map(|c| c.impulse);
+        let sum = match summary.contacts.len() {
+            1 => String::new(),
+            _ => format!("; all contacts together {}", quantity(all.sum(), "N s")),
+        };
+        let note = format!("{of}{}{sum}", closed(results, contact));
         tiles.push(tile(
             "Impulse",
             quantity(impulse, "N s"),
@@ -180,13 +189,18 @@ fn energy(energy: &Energy) -> Tile {
     let told: Vec<String> = told
         .map(|(name, value)| format!("{name} {}", part(*value)))
         .collect();
-    let note = match told.is_empty() {
+    let told = match told.is_empty() {
         true => format!("less than 0.005 % of {} put in", quantity(supplied, "J")),
         false => {
             let [lost, supplied] = [lost, supplied].map(|energy| quantity(energy, "J"));
             format!("{lost} of {supplied} put in: {}", told.join(", "))
         }
     };
+    let residual = match energy.relative_residual {
+        0.0 => "0".to_owned(),
+        residual => scientific(residual, 1),
+    };
+    let note = format!("{told}; the balance closes to {residual} of the largest energy");
     tile("Energy lost", part(lost), note, "balances")
 }
 
@@ -195,11 +209,23 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
     let kept = format!("largest of {} kept instants", maxima.instants);
     let cells = "mean of a cell";
     let all = [
-        ("Largest von Mises stress", "Pa", &maxima.von_mises, cells),
-        ("Largest plastic strain", "", &maxima.plastic_strain, cells),
-        ("Largest displacement", "m", &maxima.displacement, "a node"),
+        (
+            ("Largest von Mises stress", "Pa"),
+            (&maxima.von_mises, "von_mises"),
+            cells,
+        ),
+        (
+            ("Largest plastic strain", ""),
+            (&maxima.plastic_strain, "plastic"),
+            cells,
+        ),
+        (
+            ("Largest displacement", "m"),
+            (&maxima.displacement, "displacement"),
+            "a node",
+        ),
     ];
-    let one = |(label, unit, maximum, of): (_, _, &Option<Maximum>, _)| {
+    let one = |((label, unit), (maximum, field), of): (_, (&Option<Maximum>, _), _)| {
         let maximum = maximum.as_ref()?;
         let body = match maximum.body.as_str() {
             "" => String::new(),
@@ -208,7 +234,11 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
         let place = coordinates(&results.system, &maximum.place);
         let time = clock(results, maximum.time);
         let note = format!("{of}{body} at {place}, t = {time}; {kept}");
-        Some(tile(label, quantity(maximum.value, unit), note, "model"))
+        Some(Tile {
+            time: Some(maximum.time),
+            field,
+            ..tile(label, quantity(maximum.value, unit), note, "model")
+        })
     };
     all.into_iter().filter_map(one).collect()
 }

@@ -12,7 +12,7 @@ use carom_dynamics::{InterfaceState, Motion, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use seen::Seen;
-pub(crate) use still::{Still, slips};
+pub(crate) use still::{Largest, Still, slips};
 
 /// Equal parts of the run at whose ends states are kept: this many times the pictures of the film less one.
 const PARTS: [usize; 2] = [3, 6];

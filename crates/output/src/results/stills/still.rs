@@ -28,14 +28,24 @@ pub(crate) struct Still {
     pub(crate) plastic: Option<Vec<f32>>,
     /// Whether each cell of all bodies is deleted; none where no body has deletion.
     pub(crate) deleted: Option<Vec<bool>>,
-    /// Largest equivalent stress (Pa) and plastic strain of all cells, with the cell among those of all bodies.
-    pub(crate) largest: [Option<(f64, u32)>; 2],
+    /// Largest equivalent stress (Pa) and plastic strain of all cells.
+    pub(crate) largest: [Option<Largest>; 2],
     /// Kinetic energy ½ Σ m |v|² of each body with lumped masses, J.
     pub(crate) kinetic: Vec<f64>,
     /// Strain energy of each body, J; not finite where a body has none at this state.
     pub(crate) strain: Vec<f64>,
     /// Places with a contact force in the plane, m.
     pub(crate) marks: Vec<[f64; 3]>,
+}
+
+/// The largest value of a field at cells.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Largest {
+    pub(crate) value: f64,
+    /// The cell among those of all bodies.
+    pub(crate) cell: u32,
+    /// Displacement of its middle, m.
+    pub(crate) moved: [f64; 3],
 }
 
 impl Still {
@@ -65,6 +75,11 @@ impl Still {
         };
         let pressure: Vec<f64> = stress.iter().map(|s| -(s[0] + s[1] + s[2]) / 3.0).collect();
         let is_there = |cell: usize| deleted.as_ref().is_none_or(|deleted| !deleted[cell]);
+        let largest = |values: &[f64]| {
+            let (value, cell) = largest(values, is_there)?;
+            let moved = middle_moved(system, motion, cell);
+            Some(Largest { value, cell, moved })
+        };
         Still {
             step,
             time,
@@ -75,8 +90,8 @@ impl Still {
             pressure: shown(&pressure),
             plastic: plastic.as_deref().map(shown),
             largest: [
-                largest(&von_mises, is_there),
-                plastic.and_then(|plastic| largest(&plastic, is_there)),
+                largest(&von_mises),
+                plastic.and_then(|plastic| largest(&plastic)),
             ],
             kinetic: kinetic(system, motion),
             strain: strain(system, motion),
@@ -96,6 +111,19 @@ fn largest(values: &[f64], is_there: impl Fn(usize) -> bool) -> Option<(f64, u32
     };
     let best = cells.fold((f64::NEG_INFINITY, 0), larger);
     best.0.is_finite().then_some(best)
+}
+
+/// Mean displacement of the nodes of a cell, m.
+fn middle_moved(system: &System, motion: &Motion, cell: u32) -> [f64; 3] {
+    let mut elements = system.bodies.iter().flat_map(|body| body.cells());
+    let element = elements.nth(cell as usize);
+    let nodes = element.map_or(&[][..], |element| system.mesh.element_nodes(*element));
+    let count = nodes.len() as f64;
+    nodes.iter().fold([0.0; 3], |sum, node| {
+        let number = system.number[*node as usize];
+        let u = system.of_node(number, motion, Order::Displacement);
+        [0, 1, 2].map(|i| sum[i] + u[i] / count)
+    })
 }
 
 /// Pressure and status of the nodes: of a node that carries several points the mean of their pressures, weighted by shape functions,
