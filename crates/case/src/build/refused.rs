@@ -163,7 +163,11 @@ impl Builder<'_> {
                 format!("body.{body}.section.{kind}.rotations")
             }
         };
-        Problem::new(path, format!("{what}: {why}"))
+        let problem = Problem::new(path, format!("{what}: {why}"));
+        match what {
+            Refused::Iterative => problem.accepted(["\"auto\"", "\"direct\""]),
+            _ => problem,
+        }
     }
 
     fn path_of_link(&self, link: &str) -> String {
