@@ -21,6 +21,7 @@
   };
   // the statuses stand under the plots: at the same places, and for the same times when these are zoomed
   const tryRaster = async () => {
+    await pause(100);
     const over = document.querySelector("#plot-force .u-over");
     const raster = document.querySelector(".raster canvas");
     const [plot, rows] = [over, raster].map((element) => element.getBoundingClientRect());
