@@ -5,6 +5,11 @@
   const wrong = (condition, text) => condition && problems.push(text);
   const root = document.documentElement;
   const pause = (time) => new Promise((resolve) => setTimeout(resolve, time));
+  // a browser may take its time to paint
+  const until = async (holds) => {
+    for (let k = 0; k < 40 && !holds(); k += 1) await pause(50);
+    return holds();
+  };
   for (let k = 0; k < 100 && !root.dataset.state; k += 1) await pause(50);
   wrong(root.dataset.state !== "ready", `the page is ${root.dataset.state ?? "not ready"}`);
 
@@ -21,6 +26,7 @@
   };
   // the statuses stand under the plots: at the same places, and for the same times when these are zoomed
   const tryRaster = async () => {
+    await pause(500);
     const over = document.querySelector("#plot-force .u-over");
     const raster = document.querySelector(".raster canvas");
     const [plot, rows] = [over, raster].map((element) => element.getBoundingClientRect());
@@ -32,11 +38,9 @@
     over.dispatchEvent(new MouseEvent("mousedown", at(0.01)));
     over.dispatchEvent(new MouseEvent("mousemove", at(0.02)));
     document.dispatchEvent(new MouseEvent("mouseup", at(0.02)));
-    await pause(100);
-    wrong(!differ(whole, colours(raster)), "the statuses are not zoomed with the plots");
+    wrong(!(await until(() => differ(whole, colours(raster)))), "the statuses are not zoomed with the plots");
     over.dispatchEvent(new MouseEvent("dblclick", at(0.5)));
-    await pause(100);
-    wrong(differ(whole, colours(raster)), "a double click does not show all times again");
+    wrong(!(await until(() => !differ(whole, colours(raster)))), "a double click does not show all times again");
   };
   for (const [k, canvas] of plots.entries()) wrong(new Set(colours(canvas)).size < 4, `plot ${k} is blank`);
   for (const more of document.querySelectorAll("details")) more.open = true;

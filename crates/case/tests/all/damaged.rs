@@ -11,7 +11,7 @@ mesh.generate.a.rectangle = { origin = [0.0, 0.0], size = ["2 cm", 0.1], element
 mesh.generate.b.rectangle = { origin = [0.0, 0.11], size = [0.02, 0.1], elements = [2, 1] }
 material.m = { density = "1000 kg/m^3", elastic = { young = 1e7, poisson = 0.3 } }
 body.a = { region = "a", material = "m", section.plane-strain.thickness = 0.5 }
-body.b = { region = "b", material = "m", section.plane-strain = {}, initial.velocity = [0.0, "-1 m/s"] }
+body.b = { region = "b", material = "m", section.plane-strain.thickness = "10 mm", initial.velocity = [0.0, "-1 m/s"] }
 support.s = { on = "a.bottom", fix = ["x", "y"] }
 
 [contact.c]

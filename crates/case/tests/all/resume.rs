@@ -91,7 +91,7 @@ fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let report = String::from_utf8(files["report.html"].clone()).unwrap();
     // the tables of the model's work and of the time spent stand before the text of the case
     let work = report.find("Factorisations</").unwrap();
-    let case = report.find("<h2>Case</h2>").unwrap();
+    let case = report.find("<h2 id=\"case\">Case</h2>").unwrap();
     let report = format!("{}{}", &report[..work], &report[case..]);
     files.insert("report.html".to_owned(), report.into_bytes());
     files
