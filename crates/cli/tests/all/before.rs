@@ -91,7 +91,8 @@ fn a_check_estimates_the_run_and_draws_the_model() {
         .find(|line| line.starts_with("the run takes"))
         .unwrap()
         .to_owned();
-    assert!(line.ends_with("of 1000 steps"), "{line}");
+    let told = line.ends_with("of 1000 steps; equations by a factor");
+    assert!(told, "{line}");
     let picture = fs::read_to_string(work.path().join("model.svg")).unwrap();
     assert!(
         picture.starts_with("<svg") && picture.contains("<path"),
