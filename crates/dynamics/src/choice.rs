@@ -1,10 +1,14 @@
 //! A factor or iterations: which costs less, as predicted from counts.
 
+use std::ops::Range;
+
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::{Cholesky, Iterative, predict};
 
-use crate::operator::{Iterated, Operator, groups};
+use crate::error::Error;
+use crate::iterated::Iterated;
+use crate::operator::{Operator, groups};
 use crate::system::{Solver, System};
 
 /// Unknowns below which a factor is always cheap.
@@ -67,6 +71,22 @@ pub(crate) fn operator(
             failed: None,
         })),
     }
+}
+
+/// The operator of the matrix of a part, or the error that names its first node.
+pub(crate) fn solvable(
+    (system, of): (&System, Use),
+    part: &Range<usize>,
+    a: &Csr,
+    held: &[bool],
+    matrix: &'static str,
+) -> Result<Operator, Error> {
+    let nodes = &system.unknowns.node_of_each()[part.clone()];
+    operator((system, of), a, held, nodes).map_err(|cause| Error::Factor {
+        matrix,
+        node: system.mesh_node[nodes[0] as usize],
+        cause,
+    })
 }
 
 fn factor(matrix: &Csr, groups: &[u32]) -> Result<Operator, AlgebraError> {

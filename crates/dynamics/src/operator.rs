@@ -5,10 +5,10 @@ use std::ops::Range;
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_algebra::solver::{Cholesky, FactorStats, Iterative, Response, SparseRow, gram};
+use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
 
-use crate::choice::{self, Use};
 use crate::error::Error;
+use crate::iterated::Iterated;
 use crate::low_rank::LowRank;
 use crate::system::{LinkRow, System, push_cliques};
 
@@ -27,26 +27,6 @@ pub(crate) enum Operator {
     /// A matrix that is solved with by iterations: y = A⁻¹ r, and Y is no more than Nᵀ. Forces of rows are found together with their motion, which is
     /// added to y at once.
     Iterated(Iterated),
-}
-
-/// A matrix that is solved with by iterations.
-pub(crate) struct Iterated {
-    /// None while it is lent to the problem of contacts.
-    pub(crate) solver: Option<Box<Iterative>>,
-    /// Residual over the load at which iterations end.
-    pub(crate) tolerance: f64,
-    /// Why the last ones did not end.
-    pub(crate) failed: Option<AlgebraError>,
-}
-
-impl Iterated {
-    /// y = A⁻¹ r.
-    fn begin(&mut self, r: &[f64], y: &mut [f64]) {
-        let Some(solver) = &mut self.solver else {
-            unreachable!("a matrix is given back before the next solve")
-        };
-        self.failed = solver.solve(r, y, self.tolerance).err();
-    }
 }
 
 /// What `respond` keeps of one row.
@@ -233,7 +213,7 @@ pub(crate) struct Group {
     /// Their unknowns.
     pub(crate) parts: Vec<Range<usize>>,
     /// The place of these unknowns in the y of `begin`, one part after the other.
-    place: Range<usize>,
+    pub(crate) place: Range<usize>,
     /// `None` before the matrix is factored.
     pub(crate) operator: Option<Operator>,
     /// Room for their entries of a system vector, of more than one part.
@@ -396,67 +376,15 @@ impl Operators {
         self.operator(group).add(column, force, &mut y[place]);
     }
 
-    /// Whether any matrix is solved with by iterations.
-    pub(crate) fn iterate(&self) -> bool {
-        (0..self.groups.len()).any(|group| self.iterates(group))
-    }
-
-    /// Whether the matrix of a group is solved with by iterations.
-    pub(crate) fn iterates(&self, group: usize) -> bool {
-        matches!(self.groups[group].operator, Some(Operator::Iterated(_)))
-    }
-
     /// Products with matrices that are solved with by iterations, so far.
     pub(crate) fn products(&self) -> usize {
         let operators = self.groups.iter().filter_map(|g| g.operator.as_ref());
         operators.map(Operator::products).sum()
     }
 
-    /// The matrices that are solved with by iterations, and the places of their first unknowns in the y of `begin`; the largest tolerance.
-    /// They come back by [`Operators::take_back`].
-    pub(crate) fn lend(&mut self) -> (Vec<(usize, Box<Iterative>)>, f64) {
-        let mut tolerance: f64 = 0.0;
-        let mut lent = Vec::new();
-        for group in &mut self.groups {
-            if let Some(Operator::Iterated(iterated)) = &mut group.operator {
-                tolerance = tolerance.max(iterated.tolerance);
-                lent.extend(
-                    iterated
-                        .solver
-                        .take()
-                        .map(|solver| (group.place.start, solver)),
-                );
-            }
-        }
-        (lent, tolerance)
-    }
-
-    /// Takes the lent matrices back.
-    pub(crate) fn take_back(&mut self, lent: Vec<(usize, Box<Iterative>)>) {
-        let mut lent = lent.into_iter();
-        for group in &mut self.groups {
-            if let Some(Operator::Iterated(iterated)) = &mut group.operator {
-                iterated.solver = lent.next().map(|(_, solver)| solver);
-            }
-        }
-    }
-
     /// The place of a row of a group in the y of `begin`.
     pub(crate) fn place(&self, group: usize) -> usize {
         self.groups[group].place.start
-    }
-
-    /// Why iterations of the last `begin` did not end, and the first unknown of their part.
-    pub(crate) fn failure(&mut self) -> Option<(usize, AlgebraError)> {
-        self.groups
-            .iter_mut()
-            .find_map(|group| match &mut group.operator {
-                Some(Operator::Iterated(iterated)) => {
-                    let cause = iterated.failed.take()?;
-                    Some((group.parts[0].start, cause))
-                }
-                _ => None,
-            })
     }
 
     /// Sizes and uses of the factors.
@@ -512,22 +440,6 @@ pub(crate) fn of_part(
     }
     let a = assembled(system, part, [mass_factor, 0.0], stiffness_factors);
     factored(system, part, &a, &held, matrix)
-}
-
-/// The operator of the matrix of a part, or the error that names its first node.
-pub(crate) fn solvable(
-    (system, of): (&System, Use),
-    part: &Range<usize>,
-    a: &Csr,
-    held: &[bool],
-    matrix: &'static str,
-) -> Result<Operator, Error> {
-    let nodes = &system.unknowns.node_of_each()[part.clone()];
-    choice::operator((system, of), a, held, nodes).map_err(|cause| Error::Factor {
-        matrix,
-        node: system.mesh_node[nodes[0] as usize],
-        cause,
-    })
 }
 
 /// The factor of the matrix of a part, or the error that names its first node.

@@ -23,6 +23,7 @@ mod modal;
 mod model;
 mod moments;
 mod motion;
+mod needs_factor;
 mod nonlinear;
 mod numbered;
 mod numbered_loads;

@@ -85,7 +85,8 @@ pub(super) fn eliminate(
         let (top, bottom) =
             MatMut::from_column_major_slice_mut(panel, rows, columns).split_at_row_mut(columns);
         solve(top.as_ref(), bottom);
-        return Ok(reduce(panel, rest, (rows, columns)));
+        reduce(panel, rest, (rows, columns));
+        return Ok(());
     }
     for first in (0..columns).step_by(STRIP) {
         let width = STRIP.min(columns - first);

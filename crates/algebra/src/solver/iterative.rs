@@ -176,7 +176,7 @@ impl Iterative {
         while descent.goes_on() {
             self.multiply(&direction, &mut image);
             let slope = dot(&direction, &image);
-            if !(slope > 0.0) {
+            if slope.is_nan() || slope <= 0.0 {
                 descent.stop();
                 break;
             }

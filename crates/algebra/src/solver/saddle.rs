@@ -171,7 +171,7 @@ impl Saddle {
         self.keep(&lambda);
         while descent.goes_on() {
             let curvature = self.apply(points, own);
-            if !(curvature > 0.0) {
+            if curvature.is_nan() || curvature <= 0.0 {
                 descent.stop();
                 break;
             }

@@ -15,12 +15,12 @@ use carom_contact::Pairing;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
-use crate::choice::Use;
+use crate::choice::{Use, solvable};
 use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
 use crate::costs::Work;
 use crate::error::Error;
-use crate::operator::{Operator, Operators, single, solvable};
+use crate::operator::{Operator, Operators, single};
 use crate::step_map::StepMap;
 use crate::system::{LinkRow, Maps, NumberedModal, System};
 

@@ -12,7 +12,8 @@ use super::loads::damping_rate;
 use crate::choice::{self, Use};
 use crate::costs::Work;
 use crate::error::Error;
-use crate::operator::{Iterated, Operator, add_rows, push_rows};
+use crate::iterated::Iterated;
+use crate::operator::{Operator, add_rows, push_rows};
 use crate::system::{System, push_cliques};
 
 impl Matrices {

@@ -1,0 +1,60 @@
+//! Operators whose matrices are solved with by iterations, and their loan to the problem of contacts.
+
+use carom_algebra::Error as AlgebraError;
+use carom_algebra::solver::Iterative;
+
+use crate::operator::{Operator, Operators};
+
+impl Operators {
+    /// Whether any matrix is solved with by iterations.
+    pub(crate) fn iterate(&self) -> bool {
+        (0..self.groups.len()).any(|group| self.iterates(group))
+    }
+
+    /// Whether the matrix of a group is solved with by iterations.
+    pub(crate) fn iterates(&self, group: usize) -> bool {
+        matches!(self.groups[group].operator, Some(Operator::Iterated(_)))
+    }
+
+    /// The matrices that are solved with by iterations, and the places of their first unknowns in the y of `begin`; the largest tolerance.
+    /// They come back by [`Operators::take_back`].
+    pub(crate) fn lend(&mut self) -> (Vec<(usize, Box<Iterative>)>, f64) {
+        let mut tolerance: f64 = 0.0;
+        let mut lent = Vec::new();
+        for group in &mut self.groups {
+            if let Some(Operator::Iterated(iterated)) = &mut group.operator {
+                tolerance = tolerance.max(iterated.tolerance);
+                lent.extend(
+                    iterated
+                        .solver
+                        .take()
+                        .map(|solver| (group.place.start, solver)),
+                );
+            }
+        }
+        (lent, tolerance)
+    }
+
+    /// Takes the lent matrices back.
+    pub(crate) fn take_back(&mut self, lent: Vec<(usize, Box<Iterative>)>) {
+        let mut lent = lent.into_iter();
+        for group in &mut self.groups {
+            if let Some(Operator::Iterated(iterated)) = &mut group.operator {
+                iterated.solver = lent.next().map(|(_, solver)| solver);
+            }
+        }
+    }
+
+    /// Why iterations of the last `begin` did not end, and the first unknown of their part.
+    pub(crate) fn failure(&mut self) -> Option<(usize, AlgebraError)> {
+        self.groups
+            .iter_mut()
+            .find_map(|group| match &mut group.operator {
+                Some(Operator::Iterated(iterated)) => {
+                    let cause = iterated.failed.take()?;
+                    Some((group.parts[0].start, cause))
+                }
+                _ => None,
+            })
+    }
+}
