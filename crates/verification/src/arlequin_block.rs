@@ -10,7 +10,7 @@
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Sphere;
-use carom_dynamics::{Costs, Driver, Model, ModelBody, ModelLink, ModelTarget, System};
+use carom_dynamics::{Costs, Driver, Model, ModelBody, ModelLink, ModelTarget, Solver, System};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
 use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
@@ -181,7 +181,10 @@ pub(crate) const CHECK: Check = Check {
             let of_tip = samples.filter(|sample| !sample.contacts.is_empty());
             glued.extend(of_tip.map(|sample| sample.contacts[0].force));
         }
-        let mut driver = Driver::new(System::new(block.uniform()?)?)?;
+        let mut uniform = block.uniform()?;
+        // the cost that is compared is that of factors
+        uniform.nonlinear.iteration.solver = Solver::Direct;
+        let mut driver = Driver::new(System::new(uniform)?)?;
         let mut fine = Vec::new();
         while fine.len() < steps {
             driver.step()?;

@@ -21,7 +21,8 @@ use carom_arlequin::{Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics, ShellSection};
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
-    Costs, Driver, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Support, System,
+    Costs, Driver, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Solver, Support,
+    System,
 };
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
@@ -290,12 +291,15 @@ fn impact(plate: Plate, until: f64, dt: f64) -> Result<Impact, Error> {
         integration: Integration::Mortar { basis: Basis::Dual },
         ..contact(secondary, ModelTarget::Surface(primary), NOW)
     };
-    let system = System::new(Model {
+    let mut model = Model {
         contacts: vec![touch],
         supports,
         constraints,
         ..Model::new(bodies, mesh, theta(0.5), dt)
-    })?;
+    };
+    // the work that is compared is that of factors
+    model.nonlinear.iteration.solver = Solver::Direct;
+    let system = System::new(model)?;
     let unknowns = system.unknowns();
     let mut driver = Driver::new(system)?;
     while driver.state().time < until {
