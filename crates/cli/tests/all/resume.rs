@@ -212,3 +212,27 @@ fn a_run_that_was_killed_has_a_report_and_goes_on_with_the_same_bytes() {
     let after = fs::read(folder.join("report.html")).unwrap();
     assert!(after.len().abs_diff(before.len()) < before.len() / 100);
 }
+
+#[test]
+fn a_run_with_iterations_goes_on_with_the_same_bytes_on_any_number_of_threads() {
+    let work = tempfile::tempdir().unwrap();
+    for file in ["case.toml", "block.msh"] {
+        let from = project().join("cases/block-drop").join(file);
+        fs::copy(from, work.path().join(file)).unwrap();
+    }
+    let run = |folder: &str, threads: &str, end: &str| {
+        let end = format!("time.end=\"{end}\"");
+        let solver = "time.solver=\"iterative\"";
+        let arguments = ["run", "case.toml", "--set", solver, "--set", &end];
+        let others = ["--threads", threads, "--results", folder];
+        let output = carom(work.path(), &[&arguments[..], &others].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    };
+    run("whole", "1", "2 ms");
+    run("cut", "3", "1 ms");
+    let output = carom(work.path(), &["resume", "cut", "--until", "2 ms"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let [whole, cut] =
+        ["whole", "cut"].map(|folder| fs::read(work.path().join(folder).join("histories.csv")));
+    assert_eq!(whole.unwrap(), cut.unwrap());
+}
