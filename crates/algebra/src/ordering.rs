@@ -25,49 +25,46 @@ const DISSECTION_INTENSITY: f64 = 200.0;
 pub(crate) const ROOT: u32 = u32::MAX;
 
 /// An elimination order.
-pub(crate) struct Ordering {
+pub struct Ordering {
     /// Which method gave the order.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// New position to unknown. The first `connected` positions are postordered, the others have no neighbour.
-    pub permutation: Vec<u32>,
+    pub(crate) permutation: Vec<u32>,
     /// Number of unknowns that have a neighbour.
-    pub connected: usize,
+    pub(crate) connected: usize,
+    work: Work,
 }
 
-/// Chooses an elimination order for the pattern of `matrix`. `group_of[i]` is the group (node) of unknown i; any numbers do.
-pub(crate) fn order(matrix: &Csr, group_of: &[u32]) -> Result<Ordering, Error> {
-    let (connected, isolated): (Vec<u32>, Vec<u32>) =
-        (0..matrix.n as u32).partition(|&i| matrix.row(i as usize).0.len() > 1);
-    let groups = Groups::new(&connected, group_of);
-    let graph = Graph::new(matrix, &groups);
-    let (name, order) = graph.best_order(connected.len())?;
-    let expanded: Vec<u32> = order
-        .iter()
-        .flat_map(|&g| groups.members(g))
-        .copied()
-        .collect();
-    let mut permutation = postordered(matrix, expanded);
-    permutation.extend(isolated);
-    Ok(Ordering {
-        name,
-        permutation,
-        connected: connected.len(),
-    })
-}
+impl Ordering {
+    /// Chooses an order for the pattern of `matrix`. `group_of[i]`: node of unknown i; any numbers do.
+    ///
+    /// # Errors
+    /// The analysis fails.
+    pub fn new(matrix: &Csr, group_of: &[u32]) -> Result<Ordering, Error> {
+        let (connected, isolated): (Vec<u32>, Vec<u32>) =
+            (0..matrix.n as u32).partition(|&i| matrix.row(i as usize).0.len() > 1);
+        let groups = Groups::new(&connected, group_of);
+        let graph = Graph::new(matrix, &groups);
+        let (name, order, work) = graph.best_order(connected.len())?;
+        let expanded: Vec<u32> = order
+            .iter()
+            .flat_map(|&g| groups.members(g))
+            .copied()
+            .collect();
+        let mut permutation = postordered(matrix, expanded);
+        permutation.extend(isolated);
+        Ok(Ordering {
+            name,
+            permutation,
+            connected: connected.len(),
+            work,
+        })
+    }
 
-/// Stored entries of the factor of a matrix, and additions and multiplications of a factorisation, every group taken as dense.
-///
-/// # Errors
-/// The analysis fails.
-pub fn predict(matrix: &Csr, group_of: &[u32]) -> Result<[f64; 2], Error> {
-    let connected: Vec<u32> = (0..matrix.n as u32)
-        .filter(|&i| matrix.row(i as usize).0.len() > 1)
-        .collect();
-    let groups = Groups::new(&connected, group_of);
-    let graph = Graph::new(matrix, &groups);
-    let (_, order) = graph.best_order(connected.len())?;
-    let work = graph.work(&order);
-    Ok([work.entries, work.operations])
+    /// Entries of the factor in this order, and additions and multiplications to compute it, every group taken as dense.
+    pub fn work(&self) -> [f64; 2] {
+        [self.work.entries, self.work.operations]
+    }
 }
 
 /// True if `permutation` holds every number below its length once.
@@ -170,19 +167,19 @@ impl Graph {
         &self.neighbours[self.offsets[g]..self.offsets[g + 1]]
     }
 
-    /// The better of minimum degree and nested dissection, with its name.
-    fn best_order(&self, unknowns: usize) -> Result<(&'static str, Vec<u32>), Error> {
+    /// The better of minimum degree and nested dissection, with its name and its work.
+    fn best_order(&self, unknowns: usize) -> Result<(&'static str, Vec<u32>, Work), Error> {
         let degree = self.minimum_degree(unknowns)?;
         let work = self.work(&degree);
         let dissect = unknowns >= DISSECTION_UNKNOWNS
             && work.operations > DISSECTION_INTENSITY * work.entries;
-        if dissect
-            && let Some(dissection) = self.nested_dissection()
-            && self.work(&dissection).operations < work.operations
-        {
-            return Ok(("nested dissection", dissection));
+        if dissect && let Some(dissection) = self.nested_dissection() {
+            let other = self.work(&dissection);
+            if other.operations < work.operations {
+                return Ok(("nested dissection", dissection, other));
+            }
         }
-        Ok(("minimum degree", degree))
+        Ok(("minimum degree", degree, work))
     }
 
     fn minimum_degree(&self, unknowns: usize) -> Result<Vec<u32>, Error> {

@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
-use carom_algebra::solver::{Cholesky, Iterative, predict};
+use carom_algebra::solver::{Cholesky, Iterative, Ordering};
 
 use crate::error::Error;
 use crate::iterated::Iterated;
-use crate::operator::{Operator, groups};
+use crate::operator::{Operator, groups, unsolvable};
 use crate::system::{Solver, System};
 
 /// Unknowns below which a factor is always cheap.
@@ -56,15 +56,15 @@ pub(crate) fn operator(
     let few = matrix.n < FEW || !of.inertia;
     if asked == Solver::Direct || asked == Solver::Auto && (few || system.needs_factor().is_some())
     {
-        return factor(&matrix, &groups);
+        return factor(&matrix, Ordering::new(&matrix, &groups)?);
     }
-    let predicted = match asked {
-        Solver::Auto => Some(predict(&matrix, &groups)?),
+    let order = match asked {
+        Solver::Auto => Some(Ordering::new(&matrix, &groups)?),
         Solver::Direct | Solver::Iterative => None,
     };
     let mut solver = Box::new(Iterative::new(matrix, &groups)?);
-    match predicted {
-        Some(factor_of) if !pays(&mut solver, of, factor_of) => factor(solver.matrix(), &groups),
+    match order {
+        Some(order) if !pays(&mut solver, of, order.work()) => factor(solver.matrix(), order),
         _ => Ok(Operator::Iterated(Iterated {
             solver: Some(solver),
             tolerance: TOLERANCE,
@@ -82,15 +82,12 @@ pub(crate) fn solvable(
     matrix: &'static str,
 ) -> Result<Operator, Error> {
     let nodes = &system.unknowns.node_of_each()[part.clone()];
-    operator((system, of), a, held, nodes).map_err(|cause| Error::Factor {
-        matrix,
-        node: system.mesh_node[nodes[0] as usize],
-        cause,
-    })
+    operator((system, of), a, held, nodes)
+        .map_err(|cause| unsolvable(system, part, (matrix, cause)))
 }
 
-fn factor(matrix: &Csr, groups: &[u32]) -> Result<Operator, AlgebraError> {
-    let factor = Cholesky::new(matrix, groups)?;
+fn factor(matrix: &Csr, order: Ordering) -> Result<Operator, AlgebraError> {
+    let factor = Cholesky::ordered(matrix, order)?;
     Ok(Operator::Factored(Box::new(factor)))
 }
 

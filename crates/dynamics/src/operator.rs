@@ -442,6 +442,20 @@ pub(crate) fn of_part(
     factored(system, part, &a, &held, matrix)
 }
 
+/// The error of the matrix of a part, which names the first node of the part.
+pub(crate) fn unsolvable(
+    system: &System,
+    part: &Range<usize>,
+    (matrix, cause): (&'static str, AlgebraError),
+) -> Error {
+    let node = system.unknowns.node(part.start) as usize;
+    Error::Factor {
+        matrix,
+        node: system.mesh_node[node],
+        cause,
+    }
+}
+
 /// The factor of the matrix of a part, or the error that names its first node.
 pub(crate) fn factored(
     system: &System,
@@ -452,11 +466,7 @@ pub(crate) fn factored(
 ) -> Result<Operator, Error> {
     let nodes = &system.unknowns.node_of_each()[part.clone()];
     let factor = Cholesky::new(&a.with_identity(held), &groups(nodes));
-    let factor = factor.map_err(|cause| Error::Factor {
-        matrix,
-        node: system.mesh_node[nodes[0] as usize],
-        cause,
-    })?;
+    let factor = factor.map_err(|cause| unsolvable(system, part, (matrix, cause)))?;
     Ok(Operator::Factored(Box::new(factor)))
 }
 

@@ -9,7 +9,8 @@ use super::panel::{LANES, Lanes};
 use super::response::{Response, SparseRow};
 use super::supernodal::analyse;
 use super::sweep::{Backward, Forward, ForwardLanes, Panels};
-use crate::{Error, csr::Csr, ordering};
+use crate::ordering::{self, Ordering};
+use crate::{Error, csr::Csr};
 use pulp::Arch;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -69,7 +70,11 @@ impl Cholesky {
                 found: group_of.len(),
             });
         }
-        let order = ordering::order(matrix, group_of)?;
+        Self::ordered(matrix, Ordering::new(matrix, group_of)?)
+    }
+
+    /// Factorises `matrix` in an order that was chosen for its pattern. Errors are those of [`Cholesky::new`].
+    pub fn ordered(matrix: &Csr, order: Ordering) -> Result<Self, Error> {
         let position = ordering::inverse(matrix.n, &order.permutation);
         let symbolic = analyse(matrix, &order.permutation[..order.connected], &position)?;
         let panels = Panels::new(&symbolic);

@@ -5,7 +5,8 @@
 //! where its pivot is negative (Vanderbei 1995 for D > 0). The factor and its solves are faer's, by one thread.
 
 use super::supernodal::{Lower, Symbolic, analyse};
-use crate::{Error, csr::Csr, ordering};
+use crate::ordering::{self, Ordering};
+use crate::{Error, csr::Csr};
 use faer::{
     Conj, MatMut, Par,
     dyn_stack::{MemBuffer, MemStack},
@@ -60,7 +61,7 @@ impl QuasiDefinite {
     }
 
     fn of(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
-        let order = ordering::order(matrix, group_of)?;
+        let order = Ordering::new(matrix, group_of)?;
         let (connected, permutation) = (order.connected, order.permutation);
         let position = ordering::inverse(matrix.n, &permutation);
         let symbolic = analyse(matrix, &permutation[..connected], &position)?;

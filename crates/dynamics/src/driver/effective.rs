@@ -20,7 +20,7 @@ use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
 use crate::costs::Work;
 use crate::error::Error;
-use crate::operator::{Operator, Operators, single};
+use crate::operator::{Operator, Operators, single, unsolvable};
 use crate::step_map::StepMap;
 use crate::system::{LinkRow, Maps, NumberedModal, System};
 
@@ -379,14 +379,9 @@ fn linear_part(
     };
     let operator = solvable((system, of), part, &a, fixed, "effective matrix")?;
     let columns = modal_columns(system, part, damping_rate(map).x);
-    let node = system.unknowns.node(part.start) as usize;
     let operator = operator
         .with_columns(&columns)
-        .map_err(|cause| Error::Factor {
-            matrix: "damping of modes",
-            node: system.mesh_node[node],
-            cause,
-        })?;
+        .map_err(|cause| unsolvable(system, part, ("damping of modes", cause)))?;
     let follows = &system.nonlinear.follows;
     if follows.iter().any(|f| part.contains(&(f.unknown as usize))) {
         held.append(&a, fixed, part.start);
