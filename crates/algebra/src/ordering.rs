@@ -384,7 +384,7 @@ mod tests {
     #[test]
     fn orders_are_permutations_with_the_isolated_unknowns_last() {
         for (matrix, nodes) in cases() {
-            let ordering = order(&matrix, &nodes).unwrap();
+            let ordering = Ordering::new(&matrix, &nodes).unwrap();
             assert_eq!(ordering.permutation.len(), matrix.n);
             assert!(is_permutation(&ordering.permutation));
             for (k, &i) in ordering.permutation.iter().enumerate() {
@@ -396,7 +396,7 @@ mod tests {
     #[test]
     fn the_elimination_tree_is_postordered() {
         for (matrix, nodes) in cases() {
-            let ordering = order(&matrix, &nodes).unwrap();
+            let ordering = Ordering::new(&matrix, &nodes).unwrap();
             let parent = elimination_tree(&matrix, &ordering.permutation[..ordering.connected]);
             // In a postorder a subtree is a run of positions that ends with its root.
             let mut first: Vec<usize> = (0..parent.len()).collect();
@@ -433,7 +433,7 @@ mod tests {
     fn nested_dissection_is_kept_in_three_dimensions_only() {
         let name = |cells| {
             let (matrix, nodes) = grid(cells, 3);
-            order(&matrix, &nodes).unwrap().name
+            Ordering::new(&matrix, &nodes).unwrap().name
         };
         assert_eq!(name([15, 15, 15]), "nested dissection");
         assert_eq!(name([8, 8, 8]), "minimum degree");
