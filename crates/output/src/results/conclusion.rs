@@ -137,6 +137,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         energy: &energy,
         momentum: &momentum,
         exact: exact.as_ref(),
+        iterated: ending.costs.work.products > 0,
         study: settings.study.as_deref(),
     };
     let verdict = judge(&evidence, unfinished);

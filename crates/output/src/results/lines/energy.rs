@@ -27,12 +27,17 @@ pub(super) fn of_tolerance(quantity: &str, tolerated: f64) -> String {
 }
 
 /// What puts a residual right.
-pub(super) fn residual_remedy(tolerated: f64) -> &'static str {
-    match tolerated > 0.0 {
-        true => {
+pub(super) fn residual_remedy(evidence: &Evidence, tolerated: f64) -> &'static str {
+    match (evidence.iterated, tolerated > 0.0) {
+        (true, _) => {
+            "the iterative solver left it, as in steps in which waves cross very many elements: use a smaller step or `time.solver = \"direct\"`"
+        }
+        (false, true) => {
             "use a smaller `time.newton.tolerance`; if that does not help, report a defect of the program"
         }
-        false => "report a defect of the program: a linear run leaves rounding errors only",
+        (false, false) => {
+            "report a defect of the program: a linear run leaves rounding errors only"
+        }
     }
 }
 
@@ -90,7 +95,7 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
             Form::Power,
         ),
         Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
-        residual_remedy(tolerated),
+        residual_remedy(evidence, tolerated),
     ))
 }
 

@@ -31,7 +31,7 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
             Form::Power,
         ),
         Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
-        residual_remedy(tolerated),
+        residual_remedy(evidence, tolerated),
     ))
 }
 
@@ -53,7 +53,7 @@ pub(super) fn angular(evidence: &Evidence) -> Finding {
             Form::Power,
         ),
         Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
-        residual_remedy(tolerated),
+        residual_remedy(evidence, tolerated),
     ))
 }
 
@@ -76,7 +76,7 @@ pub(super) fn exchange(evidence: &Evidence) -> Finding {
             Form::Power,
         ),
         Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
-        residual_remedy(tolerated),
+        residual_remedy(evidence, tolerated),
     ))
 }
 
