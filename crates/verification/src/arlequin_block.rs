@@ -130,13 +130,8 @@ impl Block {
         }];
         let bottom = surface(&mesh, "tip.bottom", &bodies[0])?;
         let contact = contact(bottom, ModelTarget::rigid(BALL), HALF);
-        let zone = |name: &str, bodies, scheme, substeps| ModelZone {
-            name: name.to_string(),
-            bodies,
-            scheme,
-            substeps,
-            far: None,
-        };
+        let zone =
+            |name: &str, bodies, scheme, substeps| ModelZone::new(name, bodies, (scheme, substeps));
         Ok(Zoned {
             model: model(mesh, bodies, contact, self.finer as f64 * self.dt()),
             zones: vec![

@@ -65,13 +65,7 @@ fn zoned(n: usize) -> Result<Zoned, Error> {
         zones: [0, 1],
         rows: overlap.rows(&Coupling::default())?.rows,
     }];
-    let zone = |name: &str, body, scheme| ModelZone {
-        name: name.to_string(),
-        bodies: vec![body],
-        scheme,
-        substeps: 1,
-        far: None,
-    };
+    let zone = |name: &str, body, scheme| ModelZone::new(name, vec![body], (scheme, 1));
     Ok(Zoned {
         zones: vec![zone("below", 0, theta(0.5)), zone("above", 1, CENTRAL)],
         model: Model::new(

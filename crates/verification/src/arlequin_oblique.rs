@@ -139,13 +139,7 @@ impl Strip {
                 fix_rotations: [false; 3],
             });
         }
-        let zone = |name: &str, body, scheme| ModelZone {
-            name: name.to_string(),
-            bodies: vec![body],
-            scheme,
-            substeps: 1,
-            far: None,
-        };
+        let zone = |name: &str, body, scheme| ModelZone::new(name, vec![body], (scheme, 1));
         Ok(Zones::new(&Zoned {
             zones: vec![zone("fine", 0, theta(0.5)), zone("coarse", 1, CENTRAL)],
             links: vec![ModelLink {

@@ -190,12 +190,12 @@ fn in_zones(
     let bodies = vec![beam("foot")?, beam("head")?];
     let nodes = |name: &str| mesh.group_nodes(&mesh.groups[name]);
     let links = trace(&mesh, &nodes("head"), &nodes("foot"), 1e-9)?.with_rotations(2);
-    let zone = |body: usize, substeps: u32| ModelZone {
-        name: bodies[body].spec.name.clone(),
-        bodies: vec![body],
-        scheme: theta(0.5),
-        substeps,
-        far: None,
+    let zone = |body: usize, substeps: u32| {
+        ModelZone::new(
+            bodies[body].spec.name.clone(),
+            vec![body],
+            (theta(0.5), substeps),
+        )
     };
     let zones = vec![zone(0, 1), zone(1, INNER as u32)];
     let last = bodies[1].spec.cells[head - 1];

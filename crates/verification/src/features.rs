@@ -381,12 +381,12 @@ fn damped(model: &mut Model) -> Result<(), Error> {
 
 /// Each block is a zone; the lower one takes `substeps` steps in one of the upper.
 fn in_contact(model: Model, substeps: u32) -> Zoned {
-    let zone = |body: usize, substeps| ModelZone {
-        name: model.bodies[body].spec.name.clone(),
-        bodies: vec![body],
-        scheme: model.scheme,
-        substeps,
-        far: None,
+    let zone = |body: usize, substeps| {
+        ModelZone::new(
+            model.bodies[body].spec.name.clone(),
+            vec![body],
+            (model.scheme, substeps),
+        )
     };
     Zoned {
         zones: vec![zone(0, 1), zone(1, substeps)],
@@ -433,12 +433,8 @@ fn zones(mut model: Model, substeps: u32) -> Result<Zoned, Error> {
     upper.spec.cells = top;
     model.bodies[0].spec.cells = tip;
     model.bodies.push(upper);
-    let zone = |name: &str, bodies: &[usize], substeps| ModelZone {
-        name: name.to_string(),
-        bodies: bodies.to_vec(),
-        scheme: model.scheme,
-        substeps,
-        far: None,
+    let zone = |name: &str, bodies: &[usize], substeps| {
+        ModelZone::new(name, bodies.to_vec(), (model.scheme, substeps))
     };
     Ok(Zoned {
         zones: vec![zone("shock", &[0, 1], substeps), zone("rest", &[2], 1)],

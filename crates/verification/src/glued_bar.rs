@@ -104,12 +104,8 @@ impl GluedBar {
                 .collect::<Result<Vec<Support>, Error>>()?,
             false => Vec::new(),
         };
-        let zone = |name: &str, body, scheme, substeps| ModelZone {
-            name: name.to_string(),
-            bodies: vec![body],
-            scheme,
-            substeps,
-            far: None,
+        let zone = |name: &str, body, scheme, substeps| {
+            ModelZone::new(name, vec![body], (scheme, substeps))
         };
         Ok(Zoned {
             zones: vec![

@@ -104,13 +104,8 @@ fn zones(schemes: [Scheme; 2], dt: f64) -> Result<Zones, Error> {
     for body in &mut bodies {
         body.spec.material = Law::NeoHooke(NeoHooke { initial: MATERIAL });
     }
-    let zone = |body: usize| ModelZone {
-        name: ["fine", "coarse"][body].to_string(),
-        bodies: vec![body],
-        scheme: schemes[body],
-        substeps: 1,
-        far: None,
-    };
+    let zone =
+        |body: usize| ModelZone::new(["fine", "coarse"][body], vec![body], (schemes[body], 1));
     let mut nonlinear = Nonlinear::default();
     nonlinear.iteration.tolerance = 1e-12;
     Ok(Zones::new(&Zoned {

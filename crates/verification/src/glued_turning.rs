@@ -184,13 +184,8 @@ pub(crate) fn apart(mut model: Model, (scheme, substeps): (Scheme, u32)) -> Zone
     if scheme.get().needs_lumped_mass() {
         model.bodies[0].mass = MassKind::Lumped;
     }
-    let zone = |name: &str, body, scheme, substeps| ModelZone {
-        name: name.into(),
-        bodies: vec![body],
-        scheme,
-        substeps,
-        far: None,
-    };
+    let zone =
+        |name: &str, body, scheme, substeps| ModelZone::new(name, vec![body], (scheme, substeps));
     Zoned {
         zones: vec![
             zone("solid", 0, scheme, substeps),

@@ -200,12 +200,12 @@ impl Hammer {
 
 /// Bar and hammer in zones of their own.
 fn whole(model: Model, substeps: [u32; 2]) -> Result<Whole, Error> {
-    let zone = |body: usize| ModelZone {
-        name: model.bodies[body].spec.name.clone(),
-        bodies: vec![body],
-        scheme: model.scheme,
-        substeps: substeps[body],
-        far: None,
+    let zone = |body: usize| {
+        ModelZone::new(
+            model.bodies[body].spec.name.clone(),
+            vec![body],
+            (model.scheme, substeps[body]),
+        )
     };
     let zoned = Zoned {
         zones: vec![zone(0), zone(1)],

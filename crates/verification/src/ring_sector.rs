@@ -136,12 +136,8 @@ impl Ring {
             link("first", ["sector.bottom", "rest.top"])?,
             link("last", ["sector.top", "rest.bottom"])?,
         ];
-        let zone = |body: usize, scheme, substeps| ModelZone {
-            name: ["sector", "rest"][body].to_string(),
-            bodies: vec![body],
-            scheme,
-            substeps,
-            far: None,
+        let zone = |body: usize, scheme, substeps| {
+            ModelZone::new(["sector", "rest"][body], vec![body], (scheme, substeps))
         };
         let mut zones = Zones::new(&Zoned {
             zones: vec![zone(0, theta(THETA), SUBSTEPS), zone(1, self.outer, 1)],

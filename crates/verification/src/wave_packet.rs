@@ -132,13 +132,7 @@ pub(crate) fn zones_of(
     (dt, substeps): (f64, u32),
     scheme: Scheme,
 ) -> Zoned {
-    let zone = |name: &str, body, substeps| ModelZone {
-        name: name.to_string(),
-        bodies: vec![body],
-        scheme,
-        substeps,
-        far: None,
-    };
+    let zone = |name: &str, body, substeps| ModelZone::new(name, vec![body], (scheme, substeps));
     Zoned {
         model: Model::new(bodies.to_vec(), mesh, scheme, dt),
         zones: vec![zone("first", 0, substeps), zone("second", 1, 1)],

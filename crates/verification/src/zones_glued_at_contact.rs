@@ -187,13 +187,8 @@ impl Problem {
         let courant = if scheme.get().is_explicit() { 0.9 } else { 0.5 };
         let dt = courant * CLASSIC.length / 40.0 / CLASSIC.wave_speed();
         let secondary = surface(&mesh, "tip.right", &bodies[0])?;
-        let zone = |body: usize| ModelZone {
-            name: bodies[body].spec.name.clone(),
-            bodies: vec![body],
-            scheme,
-            substeps: 1,
-            far: None,
-        };
+        let zone =
+            |body: usize| ModelZone::new(bodies[body].spec.name.clone(), vec![body], (scheme, 1));
         Ok(Zoned {
             zones: vec![zone(0), zone(1)],
             links: vec![ModelLink {

@@ -174,12 +174,12 @@ fn in_zones(
 
 /// A zone for each bar, of which the second takes `substeps` steps to one of the first.
 fn zoned(model: Model, schemes: [Scheme; 2], substeps: u32) -> Zoned {
-    let zone = |(body, scheme): (usize, Scheme)| ModelZone {
-        name: model.bodies[body].spec.name.clone(),
-        bodies: vec![body],
-        scheme,
-        substeps: if body == 1 { substeps } else { 1 },
-        far: None,
+    let zone = |(body, scheme): (usize, Scheme)| {
+        ModelZone::new(
+            model.bodies[body].spec.name.clone(),
+            vec![body],
+            (scheme, if body == 1 { substeps } else { 1 }),
+        )
     };
     Zoned {
         zones: schemes.into_iter().enumerate().map(zone).collect(),

@@ -23,6 +23,23 @@ pub struct ModelZone {
     pub far: Option<u32>,
 }
 
+impl ModelZone {
+    /// A zone that takes as many steps whether its contacts are near or far. `substeps`: steps to one outer step.
+    pub fn new(
+        name: impl Into<String>,
+        bodies: Vec<usize>,
+        (scheme, substeps): (Scheme, u32),
+    ) -> ModelZone {
+        ModelZone {
+            name: name.into(),
+            bodies,
+            scheme,
+            substeps,
+            far: None,
+        }
+    }
+}
+
 /// How the multipliers of links run over an outer step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LinkKind {

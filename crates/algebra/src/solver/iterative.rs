@@ -200,29 +200,12 @@ impl Iterative {
         let worst = largest(&residual);
         (self.residual, self.preconditioned) = (residual, preconditioned);
         (self.direction, self.image) = (direction, image);
-        match descent.is_near() {
-            true => Ok(descent.iterations),
-            false => Err(self.failed(worst, &descent)),
-        }
-    }
-
-    /// The error of iterations that do not end.
-    pub(super) fn failed(&self, unknown: usize, descent: &Descent) -> Error {
-        Error::Iterations {
-            iterations: descent.iterations,
-            residual: descent.relative(),
-            unknown,
-        }
+        descent.end(worst)
     }
 
     /// Products with the matrix so far.
     pub fn products(&self) -> usize {
         self.products
-    }
-
-    /// Bytes held.
-    pub fn bytes(&self) -> usize {
-        12 * self.matrix.nnz() + 8 * (self.inverses.len() + self.places.len() + 6 * self.matrix.n)
     }
 }
 
@@ -233,7 +216,7 @@ pub(super) struct Descent {
     pub(super) least: f64,
     tolerance: f64,
     patience: usize,
-    pub(super) iterations: usize,
+    iterations: usize,
     broken: bool,
 }
 
@@ -282,12 +265,20 @@ impl Descent {
         self.broken = self.first > 0.0;
     }
 
-    pub(super) fn is_near(&self) -> bool {
-        self.least <= (NEAR * self.tolerance).powi(2) * self.first && !self.broken
-    }
-
-    fn relative(&self) -> f64 {
-        (self.least / self.first).sqrt()
+    /// The number of iterations. `unknown`: the one with the largest residual.
+    ///
+    /// # Errors
+    /// The residual is not near the tolerance.
+    pub(super) fn end(&self, unknown: usize) -> Result<usize, Error> {
+        let near = self.least <= (NEAR * self.tolerance).powi(2) * self.first;
+        match near && !self.broken {
+            true => Ok(self.iterations),
+            false => Err(Error::Iterations {
+                iterations: self.iterations,
+                residual: (self.least / self.first).sqrt(),
+                unknown,
+            }),
+        }
     }
 }
 

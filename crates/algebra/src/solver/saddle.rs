@@ -38,8 +38,6 @@ pub struct Saddle {
     best: [Vec<f64>; 2],
     /// Residual over that of no motion at which iterations end.
     tolerance: f64,
-    /// Iterations so far.
-    iterations: usize,
 }
 
 impl Saddle {
@@ -88,11 +86,6 @@ impl Saddle {
         std::mem::take(&mut self.operators)
     }
 
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.rows.len()
-    }
-
     /// N G⁻¹ Nᵀ of a row: zero where no force moves it.
     pub fn diagonal(&self, row: usize) -> f64 {
         product(&self.rows[row], &self.lifted[row])
@@ -114,11 +107,6 @@ impl Saddle {
         add_scaled(factor, &self.found, y);
     }
 
-    /// Iterations so far.
-    pub fn iterations(&self) -> usize {
-        self.iterations
-    }
-
     /// Takes the motion of some forces of all rows as given, and says whether it is one; forgets the one found if it is.
     ///
     /// # Errors
@@ -136,7 +124,7 @@ impl Saddle {
         for (first, operator) in &mut self.operators {
             let range = *first..*first + operator.unknowns();
             let (load, motion) = (&load[range.clone()], &mut self.given[range]);
-            self.iterations += operator.solve(load, motion, self.tolerance)?;
+            operator.solve(load, motion, self.tolerance)?;
         }
         Ok(true)
     }
@@ -192,21 +180,13 @@ impl Saddle {
             }
             now = next;
         }
-        self.iterations += descent.iterations;
         self.found.copy_from_slice(&self.best[0]);
         self.multipliers.fill(0.0);
         for ((&k, lambda), force) in points.iter().zip(&self.best[1]).zip(b) {
             self.multipliers[k as usize] = *lambda;
             *force = -lambda;
         }
-        match descent.is_near() {
-            true => Ok(()),
-            false => Err(Error::Iterations {
-                iterations: descent.iterations,
-                residual: (descent.least / first).sqrt(),
-                unknown: largest(&self.residual),
-            }),
-        }
+        descent.end(largest(&self.residual)).map(|_| ())
     }
 
     /// Keeps the iterate as the best.

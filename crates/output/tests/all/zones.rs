@@ -86,13 +86,8 @@ fn two_bars() -> Zoned {
         ModelTarget::Surface(surface("target-tip.left", &bodies[1])),
         models::velocity_law(),
     )];
-    let zone = |name: &str, bodies, scheme, substeps| ModelZone {
-        name: name.to_owned(),
-        bodies,
-        scheme,
-        substeps,
-        far: None,
-    };
+    let zone =
+        |name: &str, bodies, scheme, substeps| ModelZone::new(name, bodies, (scheme, substeps));
     let rest = Scheme::CentralDifference(CentralDifference {});
     Zoned {
         zones: vec![

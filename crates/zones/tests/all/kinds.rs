@@ -30,13 +30,7 @@ const STEEL: Elastic = Elastic {
 const MID_POINT: Scheme = Scheme::Theta(Theta { theta: 0.5 });
 
 fn zone(name: &str, body: usize, scheme: Scheme, substeps: u32) -> ModelZone {
-    ModelZone {
-        name: name.into(),
-        bodies: vec![body],
-        scheme,
-        substeps,
-        far: None,
-    }
+    ModelZone::new(name, vec![body], (scheme, substeps))
 }
 
 /// Two beams end to end, tied in translations and rotation, that fall with the left end on a stop; a mass sits on the left one and

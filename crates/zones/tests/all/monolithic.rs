@@ -200,12 +200,8 @@ impl Problem {
             ..Row::default()
         };
         let [inside, outside] = self.schemes;
-        let zone = |name: &str, body, scheme, substeps| ModelZone {
-            name: name.into(),
-            bodies: vec![body],
-            scheme,
-            substeps,
-            far: None,
+        let zone = |name: &str, body, scheme, substeps| {
+            ModelZone::new(name, vec![body], (scheme, substeps))
         };
         Zoned {
             zones: vec![

@@ -34,13 +34,7 @@ fn bars(scheme: Scheme, m: u32, n: usize) -> Zoned {
     let rows = carom_arlequin::trace(&mesh, &nodes("fine"), &nodes("coarse"), 1e-9)
         .unwrap()
         .rows;
-    let zone = |name: &str, body, substeps| ModelZone {
-        name: name.into(),
-        bodies: vec![body],
-        scheme,
-        substeps,
-        far: None,
-    };
+    let zone = |name: &str, body, substeps| ModelZone::new(name, vec![body], (scheme, substeps));
     Zoned {
         zones: vec![zone("fine", 0, m), zone("coarse", 1, 1)],
         links: vec![ModelLink {

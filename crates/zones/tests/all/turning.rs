@@ -72,13 +72,8 @@ fn bar((solid, m): (Scheme, u32), dt: f64) -> Zoned {
             stiffness: weights.stiffness.clone(),
         });
     }
-    let zone = |name: &str, body, scheme, substeps| ModelZone {
-        name: name.into(),
-        bodies: vec![body],
-        scheme,
-        substeps,
-        far: None,
-    };
+    let zone =
+        |name: &str, body, scheme, substeps| ModelZone::new(name, vec![body], (scheme, substeps));
     let mut model = Model::new(bodies.to_vec(), mesh, CONSERVING, dt);
     model.nonlinear.iteration.tolerance = 1e-12;
     Zoned {

@@ -53,13 +53,8 @@ pub fn bar() -> Zoned {
             reading: Reading::Closed,
         }),
     )];
-    let zone = |name: &str, body, scheme, substeps| ModelZone {
-        name: name.into(),
-        bodies: vec![body],
-        scheme,
-        substeps,
-        far: None,
-    };
+    let zone =
+        |name: &str, body, scheme, substeps| ModelZone::new(name, vec![body], (scheme, substeps));
     Zoned {
         zones: vec![
             zone("tip", 1, Scheme::Theta(Theta { theta: 0.5 }), INNER),

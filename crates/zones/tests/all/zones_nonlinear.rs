@@ -48,12 +48,12 @@ fn model(mesh: Mesh, bodies: Vec<ModelBody>, scheme: Scheme) -> Model {
 
 /// A zone for each of two bodies.
 fn zoned(model: Model, rows: Vec<Row>, schemes: [Scheme; 2], substeps: u32) -> Zoned {
-    let zone = |body: usize, substeps| ModelZone {
-        name: model.bodies[body].spec.name.clone(),
-        bodies: vec![body],
-        scheme: schemes[body],
-        substeps,
-        far: None,
+    let zone = |body: usize, substeps| {
+        ModelZone::new(
+            model.bodies[body].spec.name.clone(),
+            vec![body],
+            (schemes[body], substeps),
+        )
     };
     Zoned {
         zones: vec![zone(0, substeps), zone(1, 1)],
