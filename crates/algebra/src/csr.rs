@@ -91,6 +91,24 @@ impl Csr {
         self.val.fill(0.0);
     }
 
+    /// A ← (A + Aᵀ)/2.
+    pub fn symmetrise(&mut self) {
+        // row j meets the rows above it in their order, and so do its columns left of the diagonal
+        let mut left: Vec<usize> = self.row_ptr[..self.n].to_vec();
+        for i in 0..self.n {
+            for k in self.row_ptr[i]..self.row_ptr[i + 1] {
+                let j = self.col[k] as usize;
+                if j > i {
+                    let other = left[j];
+                    debug_assert_eq!(self.col[other] as usize, i, "the pattern is symmetric");
+                    let mean = 0.5 * (self.val[k] + self.val[other]);
+                    (self.val[k], self.val[other]) = (mean, mean);
+                    left[j] += 1;
+                }
+            }
+        }
+    }
+
     /// A ← s A.
     pub fn scale(&mut self, s: f64) {
         self.val.iter_mut().for_each(|value| *value *= s);
@@ -205,6 +223,21 @@ mod tests {
         assert_eq!(y, [0.0; 4]);
         matrix.multiply(&[0.0, 1.0, 0.0, 7.0], &mut y);
         assert_eq!(y, [-2.0, 5.0, -3.0, 0.0]);
+    }
+
+    #[test]
+    fn the_symmetric_part_is_half_the_sum_with_the_transpose() {
+        let mut matrix = chain();
+        matrix.add_block(&[1, 2], &[0.0, 4.0, -2.0, 1.0]);
+        matrix.add_block(&[1, 0], &[0.0, 6.0, 0.0, 0.0]);
+        let whole = matrix.clone();
+        matrix.symmetrise();
+        for i in 0..4 {
+            for j in 0..4 {
+                let mean = 0.5 * (whole.get(i, j) + whole.get(j, i));
+                assert_eq!(matrix.get(i, j), mean, "({i}, {j})");
+            }
+        }
     }
 
     #[test]

@@ -369,6 +369,15 @@ impl Compliance {
         }
     }
 
+    /// Adds the force of a row along its entries to a system vector, as its column has them.
+    pub(crate) fn add_force(&self, row: u32, force: f64, f: &mut [f64]) {
+        if let Some(kept) = &self.kept[row as usize] {
+            for (&dof, n) in kept.dofs.iter().zip(&kept.coefficients) {
+                f[dof as usize] += n * force;
+            }
+        }
+    }
+
     /// Bytes held by the columns and the matrix.
     pub(crate) fn bytes(&self) -> usize {
         let columns = self.kept.iter().flatten().flat_map(|kept| &kept.columns);

@@ -38,6 +38,7 @@ use carom_mesh::{Mesh, read};
 use crate::Error;
 use crate::build::{DISPLACEMENT, contact, group, neo_hooke, newmark, support, surface};
 use crate::check::{Check, Row, Size};
+use crate::newton_order::Iterations;
 
 const MM: f64 = 1e-3;
 const DOWN: u64 = 10;
@@ -58,6 +59,7 @@ struct Run {
     pressed: f64,
     dissipated: f64,
     residual: f64,
+    iterations: Iterations,
 }
 
 fn elastic(mesh: &Mesh, name: &str, young: f64) -> Result<ModelBody, Error> {
@@ -115,8 +117,10 @@ fn iron(file: &str, friction: f64, integration: Integration, slides: u64) -> Res
     let top = model.nonlinear.motions[0].nodes.clone();
     let mut newton = Driver::new(System::new(model)?)?;
     let (mut forces, mut pressed) = (Vec::new(), 0.0);
+    let mut iterations = Iterations::default();
     for step in 0..DOWN + slides {
         newton.step()?;
+        iterations.follow(&newton);
         if step < DOWN {
             continue;
         }
@@ -137,6 +141,7 @@ fn iron(file: &str, friction: f64, integration: Integration, slides: u64) -> Res
         pressed,
         dissipated: ledger.balance.dissipation_friction,
         residual: ledger.largest_energy_residual / ledger.largest_energy,
+        iterations,
     })
 }
 
@@ -247,6 +252,7 @@ fn beside(
             WORK * TOLERANCE,
         ),
     ];
+    rows.extend(mortar.iterations.rows(name, 6.0));
     if slides < ALONG {
         return Ok((rows, [0.0; 3]));
     }

@@ -22,6 +22,7 @@ mod hairpin;
 mod hertz;
 mod kept;
 mod kind;
+mod newton_order;
 mod page;
 mod plastic_wave;
 mod plates;

@@ -6,7 +6,7 @@
 //! energy-momentum schemes with contact (two tori of these data); the place of the second torus there was not at hand, and
 //! is ours.
 //! Tolerances: momenta 1e-10 and energy 1e-8, as the issue states; iterations end at 1e-11 of the forces, and 1e-13 is found. That the collision is
-//! a large one shows in the strain energy. Iterations and attempts: regressions, a tenth above what was found (9.9 and 1).
+//! a large one shows in the strain energy. Iterations: 6 a step, as the issue states, and the order of Newton's method. Attempts: a regression, a tenth above what was found (1).
 //! Sizes: quick 1 x 8 x 24 hexahedra in each torus, the first 20 steps; full 1 x 16 x 48, 9216 unknowns.
 
 use carom_bodies::Kinematics;
@@ -19,6 +19,7 @@ use crate::build::NOW;
 use crate::check::{Check, Row, Size};
 use crate::collision::Collision;
 use crate::kept::Kept;
+use crate::newton_order::Iterations;
 
 const RUBBER: Elastic = Elastic {
     density: 0.1,
@@ -49,24 +50,26 @@ pub(crate) const CHECK: Check = Check {
         let mut newton = Driver::new(System::new(model)?)?;
         let mut kept = Kept::new(newton.system(), newton.state());
         let energy = newton.state().ledger.initial.energy();
-        let (mut closed, mut strained, mut iterations, mut attempts) = (0, 0.0_f64, 0, 0);
+        let (mut closed, mut strained, mut attempts) = (0, 0.0_f64, 0);
+        let mut iterations = Iterations::default();
         for _ in 0..steps {
             newton.step()?;
             kept.follow(newton.state());
             let report = newton.report();
             closed = closed.max(report.contacts[0].closed);
             strained = strained.max(report.balance.strain / energy);
-            iterations += newton.residuals().len();
+            iterations.follow(&newton);
             attempts += report.attempts as usize;
         }
-        Ok(vec![
+        let mut rows = vec![
             Row::at_most("change of momentum, relative", kept.linear, 1e-10),
             Row::at_most("change of angular momentum, relative", kept.angular, 1e-10),
             Row::at_most("change of energy, relative", kept.energy, 1e-8),
             Row::at_least("most points with a force", closed as f64, 2.0),
             Row::at_least("largest strain energy / energy", strained, strain),
-            Row::at_most("iterations a step", iterations as f64 / steps as f64, 11.0).regression(),
             Row::at_most("attempts a step", attempts as f64 / steps as f64, 1.1).regression(),
-        ])
+        ];
+        rows.extend(iterations.rows("energy-momentum", 6.0));
+        Ok(rows)
     },
 };

@@ -38,7 +38,6 @@ use carom_materials::{Conserving, Failure, Tangent, Want};
 use super::Stored;
 use super::cell::{Element, MAX_UNKNOWNS};
 use super::element::{Fault, Local};
-use super::gradient::symmetric;
 
 /// How one point moves.
 struct Motion {
@@ -194,7 +193,7 @@ impl Element {
         Ok(stored)
     }
 
-    /// Adds the symmetric part of ∂f/∂u_1 (N/m) to the blocks on and above the diagonal of a row-major matrix.
+    /// Adds ∂f/∂u_1 (N/m), which is not symmetric, to a row-major matrix.
     pub(super) fn dilated_tangent_between(
         &self,
         from: &[f64],
@@ -218,7 +217,7 @@ impl Element {
             let slopes = point.slopes(&dilation);
             let moduli = point.moduli(&dilation, whole, &slopes);
             let stress = point.stress(&dilation, whole);
-            gradient.add_product(&pushed(&moduli, (f_m, f_1), &stress), matrix);
+            gradient.add_whole_product(&pushed(&moduli, (f_m, f_1), &stress), matrix);
             let add = |factor, p: Mat3, out: &mut [f64; MAX_UNKNOWNS]| {
                 gradient.add_transposed(factor, &p, &mut out[..size]);
             };
@@ -234,12 +233,8 @@ impl Element {
             *z += by_ratio * d;
         }
         for row in 0..size {
-            for column in row..size {
-                matrix[row * size + column] += 0.5
-                    * (y[row] * d[column]
-                        + d[row] * y[column]
-                        + n[row] * z[column]
-                        + z[row] * n[column]);
+            for column in 0..size {
+                matrix[row * size + column] += y[row] * d[column] + n[row] * z[column];
             }
         }
         Ok(())
@@ -320,7 +315,7 @@ impl Point {
     }
 }
 
-/// Symmetric part of L_iM 𝕃_MJNL R_kN + δ_ik T_JL/2.
+/// L_iM 𝕃_MJNL R_kN + δ_ik T_JL/2.
 fn pushed(moduli: &Tangent, (left, right): (&Mat3, &Mat3), stress: &Mat3) -> Tangent {
     let mut half = [[0.0; 9]; 9];
     for (r, half) in half.iter_mut().enumerate() {
@@ -339,7 +334,7 @@ fn pushed(moduli: &Tangent, (left, right): (&Mat3, &Mat3), stress: &Mat3) -> Tan
             }
         }
     }
-    symmetric(1.0, &out)
+    out
 }
 
 /// A× of a symmetric A: the derivative of the cofactors, A × X = A X + X A - tr(A) X - tr(X) A + (tr(A) tr(X) - A:X) I for

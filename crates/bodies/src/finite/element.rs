@@ -5,7 +5,7 @@ use carom_materials::{Failure, Material, Response, Tangent, Want};
 
 use super::Stored;
 use super::cell::Element;
-use super::gradient::{Gradient, mirror, symmetric};
+use super::gradient::{Gradient, mirror, scaled, symmetric};
 use super::viscosity::{Damped, add_pressure, damp};
 
 /// Where one element is.
@@ -81,13 +81,15 @@ impl Element {
         Ok(stored)
     }
 
-    /// Writes ∂f/∂u of an element (N/m, row-major, symmetric). `new`: room for its history.
+    /// Writes ∂f/∂u of an element (N/m, row-major). It is symmetric but between two displacements, where the force is virtual work at
+    /// the middle and varies at the end. `new`: room for its history.
     pub(super) fn tangent(
         &self,
         at: &Local,
         new: &mut [f64],
         matrix: &mut [f64],
     ) -> Result<(), Fault> {
+        let between = at.from.is_some();
         matrix.fill(0.0);
         if self.dilatation {
             match at.from {
@@ -97,15 +99,24 @@ impl Element {
         } else {
             for point in 0..self.points {
                 let (response, _) = self.response(point, at, new, Want::Tangent)?;
-                let a = symmetric(self.weighted(point), tangent(&response));
-                self.gradient(point).add_product(&a, matrix);
+                let (w, a, gradient) = (
+                    self.weighted(point),
+                    tangent(&response),
+                    self.gradient(point),
+                );
+                match between {
+                    true => gradient.add_whole_product(&scaled(w, a), matrix),
+                    false => gradient.add_product(&symmetric(w, a), matrix),
+                }
             }
         }
         if let Some(hourglass) = &self.hourglass {
-            let factor = if at.from.is_some() { 0.5 } else { 1.0 };
-            hourglass.tangent(self.dim, factor, matrix);
+            let factor = if between { 0.5 } else { 1.0 };
+            hourglass.tangent(self.dim, (factor, between), matrix);
         }
-        mirror(matrix);
+        if !between {
+            mirror(matrix);
+        }
         Ok(())
     }
 

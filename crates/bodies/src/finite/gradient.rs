@@ -48,12 +48,23 @@ impl Gradient<'_> {
 
     /// Adds B^T A B to the blocks on and above the diagonal of a row-major matrix.
     pub(super) fn add_product(&self, a: &Tangent, matrix: &mut [f64]) {
+        self.add_blocks(a, |node| node, matrix);
+    }
+
+    /// Adds B^T A B to a row-major matrix.
+    pub(super) fn add_whole_product(&self, a: &Tangent, matrix: &mut [f64]) {
+        self.add_blocks(a, |_| 0, matrix);
+    }
+
+    /// `first`: the first node whose block is wanted in the rows of a node.
+    fn add_blocks(&self, a: &Tangent, first: impl Fn(usize) -> usize, matrix: &mut [f64]) {
         let (dim, n) = (self.dim, self.dim * self.dn.len());
         for (node, dn) in self.dn.iter().enumerate() {
+            let first = first(node);
             for i in 0..dim {
                 let row = self.row(a, i, dn);
-                let out = &mut matrix[(dim * node + i) * n + dim * node..][..n - dim * node];
-                for (out, dn) in out.chunks_exact_mut(dim).zip(&self.dn[node..]) {
+                let out = &mut matrix[(dim * node + i) * n + dim * first..][..n - dim * first];
+                for (out, dn) in out.chunks_exact_mut(dim).zip(&self.dn[first..]) {
                     for (k, out) in out.iter_mut().enumerate() {
                         *out += (0..dim).map(|l| row[3 * k + l] * dn[l]).sum::<f64>();
                     }
@@ -82,11 +93,12 @@ impl Gradient<'_> {
     }
 }
 
-/// `factor` times the symmetric part of A.
-///
-/// Tangents of stresses with a potential are symmetric but for rounding; of those between two displacements, whose force is
-/// virtual work at the middle and varies at the end, the symmetric part is taken, which costs Newton's method its last order
-/// and nothing else.
+/// `factor` A.
+pub(super) fn scaled(factor: f64, a: &Tangent) -> Tangent {
+    a.map(|row| row.map(|entry| factor * entry))
+}
+
+/// `factor` times the symmetric part of A: tangents of stresses with a potential are symmetric but for rounding.
 pub(super) fn symmetric(factor: f64, a: &Tangent) -> Tangent {
     let mut out = [[0.0; 9]; 9];
     for (r, row) in out.iter_mut().enumerate() {

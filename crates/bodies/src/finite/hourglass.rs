@@ -97,12 +97,13 @@ impl Hourglass {
     }
 
     /// Adds `factor` k γ_a γ_b to the diagonal blocks of a row-major element matrix, upper half and diagonal.
-    pub(super) fn tangent(&self, dim: usize, factor: f64, matrix: &mut [f64]) {
+    pub(super) fn tangent(&self, dim: usize, (factor, whole): (f64, bool), matrix: &mut [f64]) {
         let n = matrix.len().isqrt();
         let k = factor * self.stiffness;
         for shape in self.shapes() {
             for (a, shape_a) in shape.iter().enumerate() {
-                for (b, shape_b) in shape.iter().enumerate().skip(a) {
+                let first = if whole { 0 } else { a };
+                for (b, shape_b) in shape.iter().enumerate().skip(first) {
                     for i in 0..dim {
                         matrix[(dim * a + i) * n + dim * b + i] += k * shape_a * shape_b;
                     }

@@ -99,12 +99,10 @@ impl FollowerPressure {
         }
     }
 
-    /// Adds `factor` times the symmetric part of ∂f/∂u (N/m) of the forces of [`FollowerPressure::add_force`] to a matrix over
-    /// all unknowns of the system.
+    /// Adds `factor` ∂f/∂u (N/m) of the forces of [`FollowerPressure::add_force`] to a matrix over all unknowns of the system.
     ///
     /// ∂f/∂u of a uniform pressure is symmetric but for terms on the border of the loaded surface, which vanish where it is
-    /// closed or ends on a symmetry plane or the axis; only elsewhere does the symmetric part cost Newton's method its last
-    /// order.
+    /// closed or ends on a symmetry plane or the axis.
     pub fn add_tangent(&self, p: f64, u: &[f64], factor: f64, matrix: &mut Csr) {
         let dim = self.dim;
         let (mut unknowns, mut block) = (Vec::new(), Vec::new());
@@ -115,13 +113,6 @@ impl FollowerPressure {
             self.each_point(face, u, &mut |point| {
                 self.add_point(p * factor, point, &mut block)
             });
-            for row in 0..n {
-                for column in 0..row {
-                    let mean = 0.5 * (block[row * n + column] + block[column * n + row]);
-                    block[row * n + column] = mean;
-                    block[column * n + row] = mean;
-                }
-            }
             unknowns.clear();
             let of_node = |&first: &u32| first..first + dim as u32;
             unknowns.extend(face.first.iter().flat_map(of_node));

@@ -104,7 +104,7 @@ impl Solid {
     /// Adds `factor` ∂f/∂u (N/m) to a matrix over all unknowns of the system.
     ///
     /// The derivative is by `at.u`, with `at.from` held: between two displacements a body at small strain adds `factor` K/2,
-    /// and one at finite strain the symmetric part of ∂f/∂u, which is not symmetric there.
+    /// and one at finite strain ∂f/∂u, which is not symmetric there.
     ///
     /// # Errors
     /// As [`Solid::force`]. The matrix is then of no use.

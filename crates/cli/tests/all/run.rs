@@ -305,7 +305,7 @@ fn the_log_tells_which_factor_an_iteration_takes_and_why() {
     };
     let log = told(&["--log", "debug"]);
     assert!(
-        log.contains("the factor is kept: ") && log.contains(" with a new one that costs "),
+        log.contains("the factor is renewed: ") && log.contains(" with a new one"),
         "{log}"
     );
     assert_eq!(told(&[]), "");

@@ -42,11 +42,11 @@ impl Merge {
             *rate += weight * stencil.slide(tangent);
         }
         let vectors = [normal, frame[0], frame[1]].map(|v| Vec3::from(v) * weight);
-        self.resultants[0] += stencil.resultant() * weight;
+        let turning = stencil.turning();
+        self.resultants[0] += stencil.resultant(turning.as_ref()) * weight;
         for (sum, tangent) in self.resultants[1..].iter_mut().zip(&vectors[1..]) {
             *sum += tangent;
         }
-        let turning = stencil.turning();
         for (i, (node, c)) in stencil.relative().enumerate() {
             let block = self.block(node);
             for (block, vector) in block.iter_mut().zip(&vectors) {

@@ -4,6 +4,7 @@
 //! points of its support for a multiplier of the mortar method. A stencil is one point of the secondary surface and its
 //! closest point on the other side ([`stencil`]).
 
+mod again;
 mod block;
 mod clip;
 mod curvature;

@@ -45,9 +45,34 @@ impl Mortar {
         search: &mut Search,
         (first, pairing): (usize, &mut Pairing),
     ) {
+        self.pair_some(
+            (contact, basis),
+            places,
+            search,
+            (&|_| true, first),
+            pairing,
+        );
+    }
+
+    /// The same of the multipliers, by their numbers in the contact, that are wanted; others stay as they are.
+    pub(super) fn pair_some(
+        &self,
+        (contact, basis): (&Contact, Basis),
+        places: &Places,
+        search: &mut Search,
+        (wants, first): (&dyn Fn(u32) -> bool, usize),
+        pairing: &mut Pairing,
+    ) {
         let mut work = std::mem::take(&mut pairing.work);
         work.shares.clear();
         for index in 0..self.faces.len() {
+            let corners = self.multipliers[index].iter();
+            if !corners
+                .filter(|&&point| point != u32::MAX)
+                .any(|&point| wants(point))
+            {
+                continue;
+            }
             work.quadrature.clear();
             let mut sweep = Sweep {
                 mortar: self,
@@ -71,6 +96,10 @@ impl Mortar {
         for (number, point) in contact.points.iter().enumerate() {
             let own = shares.partition_point(|share| share.point as usize <= number);
             let (these, rest) = shares.split_at(own);
+            if !wants(number as u32) {
+                shares = rest;
+                continue;
+            }
             let least = LEAST * point.area;
             let point = (first + number, point.area, least);
             pairing.place_sum(places, point, these, &mut work.merge);

@@ -122,14 +122,15 @@ impl Stencil {
     pub fn place(&self, places: &Places, at: usize, rows: &mut Rows, tangents: &mut [Rows; 2]) {
         let dim = places.dim();
         rows.begin(at, self.gap, self.normal);
-        rows.set_resultant(self.resultant().into());
+        let turning = self.turning();
+        rows.set_resultant(self.resultant(turning.as_ref()).into());
         rows.set_rate(self.rate(&self.normal));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
             rows.begin(at, 0.0, *t);
             rows.set_rate(self.slide(t));
         }
-        let (turning, tangents) = (self.turning(), &mut tangents[..dim - 1]);
+        let tangents = &mut tangents[..dim - 1];
         for (i, (node, c)) in self.relative().enumerate() {
             let mut n = self.normal.map(|n| c * n);
             if let Some(turning) = &turning {
@@ -219,9 +220,9 @@ impl Stencil {
         }
     }
 
-    /// Sum of the entries of the row N over the secondary nodes.
-    pub fn resultant(&self) -> Vec3 {
-        let turning = self.turning().map(|turning| {
+    /// Sum of the entries of the row N over the secondary nodes. `turning`: [`Stencil::turning`].
+    pub fn resultant(&self, turning: Option<&Form>) -> Vec3 {
+        let turning = turning.map(|turning| {
             let own = self.carriers().count();
             turning[..own].iter().sum::<Vec3>()
         });

@@ -33,6 +33,14 @@ impl Driver {
         Ok(())
     }
 
+    /// The motion `dx` and the contact forces of a pass with the forces in `work` and the columns that are at hand.
+    pub(super) fn solve_with_columns(&mut self) -> Result<(), Error> {
+        self.begin_solve()?;
+        self.solve_candidates()?;
+        self.end_iteration();
+        Ok(())
+    }
+
     /// Forces of the iteration without those of contacts, into `work`.
     fn load_iteration(&mut self) {
         self.begin_link_iteration();
@@ -159,7 +167,9 @@ impl Driver {
         };
         let rows = &self.pairing.rows;
         let points = (&self.candidates[..], 1, together);
-        compliance.update(points, rows, &system.fixed, operators);
+        if !self.refined.holds_columns {
+            compliance.update(points, rows, &system.fixed, operators);
+        }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
         self.describe_candidates(None);
         let factor = self.maps.contact();

@@ -68,6 +68,8 @@ pub(super) struct Matrices {
     pub(super) held: HeldColumns,
     /// Those of the other parts together, with the rows and columns of held unknowns.
     pub(super) matrix: Option<Csr>,
+    /// The whole derivative of what bodies, inertia and loads give, without contact forces, not symmetric; none unless wanted.
+    pub(super) whole: Option<Csr>,
     /// Unknowns of the contact points whose curvature the pattern has room for, by group, one after the other.
     pub(super) coupled: Vec<Vec<Vec<u32>>>,
     /// Diagonals, by unknown.
@@ -98,6 +100,8 @@ pub(super) struct At<'a> {
     pub(super) rows: &'a Arc<Vec<LinkRow>>,
     /// Parts with a proximal term, and its part of the diagonal.
     pub(super) proximal: (&'a [Range<usize>], f64),
+    /// Whether the derivative without contact forces is kept, where all parts have one that changes.
+    pub(super) whole: bool,
 }
 
 /// The contact points whose forces turn with the configuration.
@@ -212,6 +216,20 @@ impl Effective {
             matrix.multiply(x, y);
         }
         now.held.add_product(x, y);
+    }
+
+    /// Whether the whole derivative of inertia, internal and damping forces of all parts is at hand.
+    pub(super) fn has_whole_tangent(&self) -> bool {
+        let now = self.now.as_ref();
+        now.is_some_and(|now| now.first == 0 && now.whole.is_some())
+    }
+
+    /// y = K̂ x with that derivative, N.
+    pub(super) fn whole_product(&self, x: &[f64], y: &mut Vec<f64>) {
+        y.resize(x.len(), 0.0);
+        if let Some(whole) = self.now.as_ref().and_then(|now| now.whole.as_ref()) {
+            whole.multiply(x, y);
+        }
     }
 
     /// The factors, and the compliance that goes with them; none before all are made.
@@ -345,6 +363,7 @@ impl Matrices {
             compliance,
             held,
             matrix: None,
+            whole: None,
             coupled,
             diagonal,
         })
@@ -374,6 +393,7 @@ fn linear_part(
         *entry = a.get(place, place);
     }
     let of = Use {
+        part: Some(part),
         stays: true,
         inertia: map.inertia.x != 0.0,
     };

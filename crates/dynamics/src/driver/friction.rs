@@ -57,7 +57,9 @@ impl Driver {
         };
         let begin = Instant::now();
         let points = (&self.candidates[..], width, together);
-        compliance.update(points, &self.stacked, &system.fixed, operators);
+        if !self.refined.holds_columns {
+            compliance.update(points, &self.stacked, &system.fixed, operators);
+        }
         let several = compliance.groups().several();
         self.describe_candidates(Some(tangents as u32));
         let mut friction = Vec::new();

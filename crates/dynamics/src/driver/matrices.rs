@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use carom_contact::{Contact, Sliding};
+
 use super::Driver;
 use super::effective::{At, Turning};
 use super::floating::{GROWTH as HEAVIER, LARGEST};
@@ -34,6 +36,16 @@ impl Driver {
         let floats = self.floats() && self.floating.parts.contains(&system.parts[part]);
         let changes = |k: usize| !system.bodies[k].is_linear() || system.nonlinear.has_follower(k);
         floats || bodies.any(changes)
+    }
+
+    /// Whether the effective matrix leaves out much of the derivative of the forces: of those between two states what is not
+    /// symmetric, of contacts whose points slide how rows and weights move with them.
+    fn leaves_out(&self) -> bool {
+        let mut contacts = self.system.contacts.iter().enumerate();
+        let slides = |(number, contact): (usize, &Contact)| {
+            contact.sliding == Sliding::Finite && self.turning(number) != 0.0
+        };
+        self.between() || contacts.any(slides)
     }
 
     /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
@@ -69,6 +81,7 @@ impl Driver {
             history: &motion.history,
             rows: &self.rows,
             proximal: (floats, self.floating.weight),
+            whole: self.leaves_out(),
         };
         let forces = self.next.interface.force.iter().enumerate();
         let turned = forces.map(|(point, force)| force * self.turning(system.contact_of(point)));

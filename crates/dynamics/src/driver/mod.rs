@@ -53,6 +53,7 @@ mod part_matrix;
 mod predictor;
 mod projection;
 pub(crate) mod record;
+mod refine;
 mod renewal;
 mod reported;
 mod residual;
@@ -99,6 +100,7 @@ use leapfrog::Direct;
 use linking::Multipliers;
 use mixing::Mixing;
 use paired::Manner;
+use refine::Refined;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
 use weak::{WeakForms, WithWeak};
@@ -172,6 +174,7 @@ pub struct Driver {
     residuals: Vec<f64>,
     pace: Pace,
     mixing: Mixing,
+    refined: Refined,
     carried: Carried,
     jump: Jump,
     failed: Option<InterfaceProblem>,

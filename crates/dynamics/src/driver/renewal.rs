@@ -33,6 +33,12 @@ impl Matrices {
         };
         a.clear();
         let assembled = self.assemble(system, at, &mut a);
+        match &mut self.whole {
+            whole if !at.whole || first > 0 => *whole = None,
+            Some(whole) => whole.clone_from(&a),
+            whole => *whole = Some(a.clone()),
+        }
+        a.symmetrise();
         let forces = turning.forces.iter().copied().enumerate();
         let forces = forces.filter(|(_, force)| *force != 0.0);
         turning
@@ -105,6 +111,7 @@ impl Matrices {
                 })) => solver.renew(free),
                 other => {
                     let of = Use {
+                        part: None,
                         stays: false,
                         inertia: at.maps.all().iter().all(|map| map.inertia.x != 0.0),
                     };

@@ -18,6 +18,7 @@ use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
+use super::refine::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
@@ -119,6 +120,7 @@ impl Driver {
             residuals: Vec::new(),
             pace: Pace::default(),
             mixing: Mixing::default(),
+            refined: Refined::default(),
             carried: Carried::default(),
             jump: Jump::default(),
             failed: None,

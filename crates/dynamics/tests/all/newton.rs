@@ -414,14 +414,17 @@ fn an_impact_of_rubber_needs_no_smaller_steps() {
     // Some steps need nearly the thirty iterations of the default, as their chatter has it: that is not looked at here.
     model.nonlinear.iteration.passes = 60;
     let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
+    let mut iterations = 0;
     for _ in 0..100 {
         newton.step().unwrap();
+        iterations += newton.residuals().len();
     }
     // forces of this scheme come and go from step to step
     assert!(newton.state().records.contacts[0].impulse() > 0.0);
     // a first guess whose matrix is not positive definite is no reason to halve the step
     assert_eq!(newton.state().control.failed, 0);
-    assert!(newton.costs().work.factorisations < 200);
+    // a regression: 6 a step were found, chatter and all
+    assert!(iterations < 700, "{iterations}");
 }
 
 #[test]

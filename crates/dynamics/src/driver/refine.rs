@@ -1,0 +1,249 @@
+//! The problem of an iteration with bodies alone linearised.
+//!
+//! The matrix A of an iteration is symmetric, and its contact forces act along the rows N of where the iteration begins. What it leaves
+//! out (the weights of mortar and the directions of friction, which move with the points, and the part of the tangent that is not
+//! symmetric) makes iterations converge at a rate, not quadratically. With K̂ the whole derivative of inertia, internal and
+//! damping forces at x, the motion d and the forces P of the iteration are therefore sought of
+//!
+//! `r(x) - K̂ d + N(x + d)ᵀ P = 0,   laws at x + d,`
+//!
+//! whose only error is that of the bodies, of second order in d. Passes solve it with A as it is,
+//!
+//! `A δ - N(x)ᵀ P₊ = r - K̂ d + (N(x + d) - N(x))ᵀ P,   gap(x + d) + N(x) δ,   d₊ = d + δ,`
+//!
+//! which needs the columns of N(x) that are at hand, and neither forces of elements nor a factor; Anderson's mixing makes of them
+//! what GMRES is for linear problems. These are Newton iterations with the symmetric factor as preconditioner.
+
+use std::sync::Arc;
+
+use carom_contact::Sliding;
+
+use super::deletion::as_left;
+use super::mixing::{LARGEST, Mixing};
+use super::residual::Standing;
+use super::{Driver, Vectors};
+use crate::coulomb::Slip;
+use crate::error::Error;
+use crate::state::InterfaceState;
+use crate::system::System;
+
+/// Most passes of an iteration.
+const PASSES: usize = 12;
+
+/// Imbalance of the last pass over that of the first one.
+const LEFT: f64 = 0.1;
+
+/// Imbalance of the last pass, and defects of contact laws, over the tolerances of the iterations.
+const WITHIN: f64 = 0.01;
+
+/// Imbalance over that of the pass before from which on passes are of no use.
+const STALLED: f64 = 0.9;
+
+/// What the passes need.
+#[derive(Default)]
+pub(super) struct Refined {
+    mixing: Mixing,
+    /// x and residual where the iteration begins.
+    x: Vec<f64>,
+    residual: Vec<f64>,
+    /// d, and K̂ d.
+    motion: Vec<f64>,
+    product: Vec<f64>,
+    /// What it was before the last pass, and the contacts.
+    before: Vec<f64>,
+    interface: InterfaceState,
+    slips: Vec<Slip>,
+    /// Whether the columns of the contact points are those of the iteration, wherever points are.
+    pub(super) holds_columns: bool,
+}
+
+impl Driver {
+    /// Whether the problem of an iteration is solved with bodies alone linearised.
+    pub(super) fn refines(&self) -> bool {
+        let turns = |&point: &u32| {
+            let contact = self.system.contact_of(point as usize);
+            self.turning(contact) != 0.0 && self.system.contacts[contact].sliding == Sliding::Finite
+        };
+        self.effective.has_whole_tangent()
+            && !self.floats()
+            && !self.has_links()
+            && self.vectors.push.is_empty()
+            && (self.between() || self.candidates.iter().any(turns))
+    }
+
+    /// Makes the motion `dx` of the iteration and the contact forces after it those of the problem with bodies alone linearised.
+    ///
+    /// # Errors
+    /// A contact problem without solution.
+    pub(super) fn refine(&mut self) -> Result<(), Error> {
+        // the motion has the jump of the supports
+        let jumps = std::mem::take(&mut self.vectors.jumps);
+        let mut refined = std::mem::take(&mut self.refined);
+        refined.x.clone_from(&self.vectors.x);
+        refined.residual.clone_from(&self.vectors.residual);
+        refined.motion.clone_from(&self.vectors.dx);
+        refined.mixing.clear();
+        self.refined.holds_columns = true;
+        let outcome = self.passes(&mut refined);
+        let vectors = &mut self.vectors;
+        vectors.jumps = jumps;
+        vectors.x.copy_from_slice(&refined.x);
+        vectors.residual.copy_from_slice(&refined.residual);
+        vectors.dx.copy_from_slice(&refined.motion);
+        self.refined = refined;
+        outcome
+    }
+
+    fn passes(&mut self, refined: &mut Refined) -> Result<(), Error> {
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        let (mut enough, mut last) = (None, f64::INFINITY);
+        for _ in 0..PASSES {
+            let standing = self.stand_at(refined);
+            let now = standing.imbalance;
+            let wanted = || f64::max(self.gain() * now, WITHIN * tolerance);
+            let enough = *enough.get_or_insert_with(wanted);
+            let obeys = standing.defect <= WITHIN;
+            if obeys && (now <= enough.max(standing.rounding) || now > STALLED * last) {
+                break;
+            }
+            if now > last {
+                self.undo_pass(refined);
+                break;
+            }
+            last = now;
+            refined.before.clone_from(&refined.motion);
+            refined.interface.clone_from(&self.next.interface);
+            refined.slips.clone_from(&self.slips);
+            self.load_pass();
+            self.solve_with_columns()?;
+            let way = (&self.vectors.x[..], &mut self.vectors.dx[..]);
+            if refined.mixing.mix(way, &mut self.next.interface, LARGEST) {
+                self.take_weak();
+            }
+            for (motion, dx) in refined.motion.iter_mut().zip(&self.vectors.dx) {
+                *motion += dx;
+            }
+        }
+        Ok(())
+    }
+
+    /// Undoes the last pass.
+    fn undo_pass(&mut self, refined: &mut Refined) {
+        refined.motion.clone_from(&refined.before);
+        self.next.interface.clone_from(&refined.interface);
+        self.slips.clone_from(&refined.slips);
+        self.take_weak();
+    }
+
+    /// Part of the imbalance of its first pass that the last pass of an iteration may leave: as much less than a tenth as the iteration
+    /// before has left, after which bodies leave less again.
+    fn gain(&self) -> f64 {
+        match self.residuals[..] {
+            [.., before, now] if now < before => LEFT * now / before,
+            _ => LEFT,
+        }
+    }
+
+    /// Goes to x + d, with the residual of linear bodies there.
+    fn stand_at(&mut self, refined: &mut Refined) -> Standing {
+        let system = Arc::clone(&self.system);
+        self.effective
+            .whole_product(&refined.motion, &mut refined.product);
+        let vectors = &mut self.vectors;
+        for (i, x) in vectors.x.iter_mut().enumerate() {
+            *x = refined.x[i] + refined.motion[i];
+            if !system.fixed[i] {
+                vectors.residual[i] = refined.residual[i] - refined.product[i];
+            }
+        }
+        self.pair_candidates();
+        self.standing()
+    }
+
+    /// Pairs the candidates at x; other points stay as they are.
+    fn pair_candidates(&mut self) {
+        let system = Arc::clone(&self.system);
+        let plain = self.vectors.ahead.is_empty() && self.vectors.end.is_empty();
+        if !plain || self.rows_stand || !self.far.is_empty() {
+            return self.pair(false);
+        }
+        let (mut placed, mut own) = (None, Vec::new());
+        for (number, contact) in system.contacts.iter().enumerate() {
+            let range = system.points_of(number);
+            let first = range.start;
+            let points = self.candidates.iter().map(|&point| point as usize);
+            own.clear();
+            own.extend(
+                points
+                    .filter(|point| range.contains(point))
+                    .map(|point| (point - first) as u32),
+            );
+            if own.is_empty() || self.turning(number) == 0.0 {
+                continue;
+            }
+            let paired = self.paired_at(number);
+            if placed.replace(paired) != Some(paired) {
+                let Vectors { x, push, place, .. } = &mut self.vectors;
+                self.maps
+                    .whole(|map| paired.row(map), &self.state.motion, [x, push], place);
+            }
+            if contact.sliding == Sliding::Small {
+                let initial = &self.initial[number].rows;
+                self.pairing
+                    .rows
+                    .move_again(first, initial, &self.vectors.place);
+                continue;
+            }
+            self.pairing.span = self.span(number);
+            let time = self.state.time + self.paired_after(number);
+            let mut places = system.places(time, &self.vectors.place, &self.state.motion.frames);
+            places.frames.middle = self.between();
+            let contact = as_left(&self.bared, &system, number);
+            let search = &mut self.search[number];
+            contact.pair_again(&places, search, (&own, first), &mut self.pairing);
+        }
+        self.stack();
+    }
+
+    /// Forces of a pass without those of its contacts along N(x), into `work`.
+    fn load_pass(&mut self) {
+        let factor = self.maps.contact();
+        let vectors = &mut self.vectors;
+        for (work, (r, contact)) in vectors
+            .work
+            .iter_mut()
+            .zip(vectors.residual.iter().zip(&vectors.contact))
+        {
+            *work = r + factor * contact;
+        }
+        self.take_column_forces(-factor);
+        let System { fixed, .. } = &*self.system;
+        for (work, fixed) in self.vectors.work.iter_mut().zip(fixed) {
+            if *fixed {
+                *work = 0.0;
+            }
+        }
+    }
+
+    /// Adds the forces of the candidates along the rows of their columns, times `factor`, to `work`.
+    fn take_column_forces(&mut self, factor: f64) {
+        let width = 1 + match self.rubs() {
+            true => self.system.tangents() as u32,
+            false => 0,
+        };
+        let Some((_, compliance)) = self.effective.both() else {
+            return;
+        };
+        let interface = &self.next.interface;
+        for &point in &self.candidates {
+            let at = point as usize;
+            let t = interface.friction.get(at).copied().unwrap_or_default();
+            let forces = [interface.force[at], t[0], t[1]];
+            for (row, force) in (point * width..(point + 1) * width).zip(forces) {
+                if force != 0.0 {
+                    compliance.add_force(row, factor * force, &mut self.vectors.work);
+                }
+            }
+        }
+    }
+}
