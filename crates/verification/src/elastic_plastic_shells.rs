@@ -141,8 +141,8 @@ fn run(_: Size) -> Result<Vec<Row>, Error> {
     let one_point = Formulation::Reduced { hourglass: 0.05 };
     for (kind, grid, formulation) in [
         ("one point", Grid::new(10, 1), one_point),
-        ("four points", Grid::new(10, 1), Formulation::Standard),
-        ("four points, 1:20", Grid::new(20, 1), Formulation::Standard),
+        ("four points", Grid::new(10, 1), Formulation::Full),
+        ("four points, 1:20", Grid::new(20, 1), Formulation::Full),
     ] {
         for (ratio, tolerance) in [(0.5_f64, 2e-3), (1.2, 0.01), (1.8, 0.01), (4.0, 0.01)] {
             let exact = match ratio <= 1.0 {
