@@ -126,7 +126,7 @@ fn moment(grid: &Grid, formulation: Formulation, ratio: f64) -> Result<f64, Erro
     Ok(moments.sum::<f64>() / (YIELD * width * thickness * thickness / 4.0))
 }
 
-fn run(_: Size) -> Result<Vec<Row>, Error> {
+fn run(size: Size) -> Result<Vec<Row>, Error> {
     let mut rows = Vec::new();
     for triangles in [false, true] {
         let (n, m) = (20, 1);
@@ -144,7 +144,12 @@ fn run(_: Size) -> Result<Vec<Row>, Error> {
         ("four points", Grid::new(10, 1), Formulation::Full),
         ("four points, 1:20", Grid::new(20, 1), Formulation::Full),
     ] {
-        for (ratio, tolerance) in [(0.5_f64, 2e-3), (1.2, 0.01), (1.8, 0.01), (4.0, 0.01)] {
+        let all = [(4.0_f64, 0.01), (0.5, 2e-3), (1.2, 0.01), (1.8, 0.01)];
+        let taken = match size {
+            Size::Quick => &all[..1],
+            Size::Full => &all[..],
+        };
+        for &(ratio, tolerance) in taken {
             let exact = match ratio <= 1.0 {
                 true => ratio / 1.5,
                 false => 1.0 - ratio.powi(-2) / 3.0,

@@ -1,8 +1,7 @@
 //! Small models with an impact, each with one feature: what batteries run over besides schemes and laws.
 //!
-//! A block of 0.6 m x 0.4 m comes down at 5 m/s and 1 m/s sideways on a block of 1 m x 0.5 m, in plane strain, meshes that do not match; where
-//! a surface faces itself, a hairpin whose prongs are flung at each other; of shells, a plate that falls on a plate; of links that turn, a bar of a solid and a beam that falls on a plane; with a static stage, a block that is held at one
-//! side and pressed down by a traction after the stage.
+//! A block of 0.6 m x 0.4 m comes down at 5 m/s and 1 m/s sideways on a block of 1 m x 0.5 m, in plane strain, meshes that do not match; where a surface faces itself, a hairpin whose prongs are flung at each other; of shells, a plate that falls
+//! on a plate; of links that turn, a bar of a solid and a beam that falls on a plane; with a static stage, a block that is held at one side and pressed down by a traction after the stage.
 
 use std::sync::Arc;
 
@@ -18,14 +17,13 @@ use carom_mesh::{ElementId, Mesh};
 use carom_reduction::{Keep, Ratios, damp, reduce};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
-use crate::Error;
 use crate::battery::laws;
 use crate::blocks::{Blocks, RUBBER, SMALLEST, SPEED};
 use crate::build::{support, surface};
 use crate::hairpin::{self, Hairpin};
 use crate::shell_edges::Pair;
 use crate::shells::Grid;
-use crate::{features_links, glued_turning};
+use crate::{Error, features_links, glued_turning};
 
 /// What a model has besides scheme and law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -556,10 +554,14 @@ fn reason_of(error: &carom_system::Error) -> Option<String> {
         E::ConsistentMass { .. } => {
             "explicit schemes divide by the mass of each node, and a reduced body has a matrix of mass"
         }
-        E::Nonlinear {
-            what: Refused::TurningLink(_),
-            why,
-        } => return Some(format!("links that turn: {why}")),
+        E::Nonlinear { what, why } => {
+            let of = match what {
+                Refused::TurningLink(_) => "links that turn",
+                Refused::FiniteRotations(_) => "finite rotations",
+                _ => return None,
+            };
+            return Some(format!("{of}: {why}"));
+        }
         E::MasslessContact { cause, .. } => return Some(format!("massless nodes: {cause}")),
         _ => return None,
     };
