@@ -117,18 +117,25 @@ struct Runs {
     refused: usize,
     untouched: usize,
     failed: usize,
+    /// The first that failed, and why.
+    first: String,
     worst: f64,
 }
 
 impl Runs {
-    fn add(&mut self, outcome: Result<(Balances, bool), Error>) {
+    fn add(&mut self, line: &Line, outcome: Result<(Balances, bool), Error>) {
         self.taken += 1;
         match outcome {
             Ok((balances, touched)) => {
                 self.worst = self.worst.max(balances.worst());
                 self.untouched += usize::from(!touched);
             }
-            Err(_) => self.failed += 1,
+            Err(error) => {
+                self.failed += 1;
+                if self.first.is_empty() {
+                    self.first = format!(" ({}, {}: {error})", line.scheme, line.law);
+                }
+            }
         }
     }
 
@@ -136,7 +143,7 @@ impl Runs {
         let name = |what: &str| format!("{}: {what}", feature.name());
         vec![
             Row::at_least(name("runs"), self.taken as f64, 1.0),
-            Row::count(name("runs that failed"), self.failed, 0),
+            Row::count(name("runs that failed") + &self.first, self.failed, 0),
             Row::count(name("runs that never touched"), self.untouched, 0),
             Row::at_most(name("residuals of the balances / bound"), self.worst, 1.0),
             Row::shown(name("combinations that are refused"), self.refused as f64),
@@ -163,7 +170,7 @@ pub(crate) const CHECK: Check = Check {
                 if size == Size::Quick && number % 5 != k % 5 {
                     continue;
                 }
-                runs.add(run(feature, built));
+                runs.add(line, run(feature, built));
             }
             rows.extend(runs.rows(feature));
         }

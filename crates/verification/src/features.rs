@@ -1,8 +1,7 @@
 //! Small models with an impact, each with one feature: what batteries run over besides schemes and laws.
 //!
-//! A block of 0.6 m x 0.4 m comes down at 5 m/s and 1 m/s sideways on a block of 1 m x 0.5 m, in plane strain, meshes that do not match; where
-//! a surface faces itself, a hairpin whose prongs are flung at each other; of shells, a plate that falls on a plate; with a static stage, a block that is held at one
-//! side and pressed down by a traction after the stage.
+//! A block of 0.6 m x 0.4 m comes down at 5 m/s and 1 m/s sideways on a block of 1 m x 0.5 m, in plane strain, meshes that do not match; where a surface faces itself, a hairpin whose prongs are flung at each other; of shells, a plate that falls
+//! on a plate; of links that turn, a bar of a solid and a beam that falls on a plane; with a static stage, a block that is held at one side and pressed down by a traction after the stage.
 
 use std::sync::Arc;
 
@@ -10,21 +9,21 @@ use carom_arlequin::trace;
 use carom_bodies::{MassKind, Rotations};
 use carom_contact::{Basis, Integration, Law, Sliding};
 use carom_dynamics::{
-    Adaptive, Amplitude, Closing, Driver, Load, LoadKind, Model, ModelLink, Preload, Scheme, State,
-    Stepper, System,
+    Adaptive, Amplitude, Closing, Driver, Load, LoadKind, Model, ModelLink, Preload, Refused,
+    Scheme, State, Stepper, System,
 };
 use carom_materials::{Branch, Elastic, J2Plasticity, Law as Material, Maxwell, NeoHooke, Plane};
 use carom_mesh::{ElementId, Mesh};
 use carom_reduction::{Keep, Ratios, damp, reduce};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
-use crate::Error;
 use crate::battery::laws;
 use crate::blocks::{Blocks, RUBBER, SMALLEST, SPEED};
 use crate::build::{support, surface};
 use crate::hairpin::{self, Hairpin};
 use crate::shell_edges::Pair;
 use crate::shells::Grid;
+use crate::{Error, features_links, glued_turning};
 
 /// What a model has besides scheme and law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,10 +49,12 @@ pub(crate) enum Feature {
     DampedModesZones,
     Shells,
     TurningShells,
+    TurningLinks,
+    TurningLinksApart,
 }
 
 impl Feature {
-    pub(crate) const ALL: [Feature; 21] = [
+    pub(crate) const ALL: [Feature; 23] = [
         Feature::Friction,
         Feature::FiniteStrain,
         Feature::Plasticity,
@@ -75,6 +76,8 @@ impl Feature {
         Feature::DampedModesZones,
         Feature::Shells,
         Feature::TurningShells,
+        Feature::TurningLinks,
+        Feature::TurningLinksApart,
     ];
 
     pub(crate) fn name(self) -> &'static str {
@@ -100,6 +103,8 @@ impl Feature {
             Feature::DampedModesZones => "damped modes, zones, m = 4",
             Feature::Shells => "shells",
             Feature::TurningShells => "shells, finite rotations",
+            Feature::TurningLinks => "links that turn",
+            Feature::TurningLinksApart => "links that turn, m = 4",
         }
     }
 
@@ -168,6 +173,11 @@ impl Feature {
     pub(crate) fn laws(self) -> Result<Vec<(&'static str, Law)>, Error> {
         let all = match self {
             Feature::Shells | Feature::TurningShells => laws(&SHEET, PLATE, 4.0 * PLATE * PLATE)?,
+            Feature::TurningLinks | Feature::TurningLinksApart => laws(
+                &features_links::SOFT,
+                features_links::CELL,
+                features_links::SIDE,
+            )?,
             Feature::SelfContact => laws(&hairpin::RUBBER, hairpin::THICKNESS, hairpin::LENGTH)?,
             // E, h, and the lower side of the upper block, 1 m thick
             _ => laws(&RUBBER, 0.2, 0.6)?,
@@ -194,6 +204,14 @@ impl Feature {
             Feature::SelfContact => return flung(scheme, law, refinement),
             Feature::Shells => Some(Rotations::Small),
             Feature::TurningShells => Some(Rotations::Finite),
+            Feature::TurningLinks => {
+                let model = features_links::bar((scheme, law), refinement)?;
+                return Ok(Built::One(System::new(model)?, None));
+            }
+            Feature::TurningLinksApart => {
+                let model = features_links::bar((scheme, law), refinement)?;
+                return Built::zoned(glued_turning::apart(model, (scheme, 4)));
+            }
             _ => None,
         };
         if let Some(rotations) = rotations {
@@ -535,6 +553,14 @@ fn reason_of(error: &carom_system::Error) -> Option<String> {
         }
         E::ConsistentMass { .. } => {
             "explicit schemes divide by the mass of each node, and a reduced body has a matrix of mass"
+        }
+        E::Nonlinear { what, why } => {
+            let of = match what {
+                Refused::TurningLink(_) => "links that turn",
+                Refused::FiniteRotations(_) => "finite rotations",
+                _ => return None,
+            };
+            return Some(format!("{of}: {why}"));
         }
         E::MasslessContact { cause, .. } => return Some(format!("massless nodes: {cause}")),
         _ => return None,

@@ -15,6 +15,7 @@ mod collision;
 mod error;
 mod explicit_implicit;
 mod features;
+mod features_links;
 mod figures;
 mod glued;
 mod glued_bar;

@@ -14,7 +14,7 @@ use crate::repeated::{Pairs, advance, rows, stride};
 pub(crate) const CHECK: Check = Check {
     name: "rejections-features",
     fact: "runs with friction, large strain, mortar and the like in which steps are dropped end in the same bytes",
-    run: |size| rows(21, (stride(size), 1), rejected),
+    run: |size| rows(23, (stride(size), 1), rejected),
 };
 
 fn rejected(pairs: &mut Pairs, feature: Feature, built: &Built) -> Result<(), Error> {

@@ -13,7 +13,7 @@ use crate::repeated::{Pairs, advance, rows, stride};
 pub(crate) const CHECK: Check = Check {
     name: "resume-features",
     fact: "runs with friction, large strain, mortar, zones and the like, cut and resumed from bytes, end in the same bytes",
-    run: |size| rows(21, (stride(size), 1), resumed),
+    run: |size| rows(23, (stride(size), 1), resumed),
 };
 
 /// Compares each step of the run with that step taken by a new driver from the bytes before it, and the end with that of a run

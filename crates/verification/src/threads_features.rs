@@ -26,7 +26,7 @@ pub(crate) const CHECK: Check = Check {
             true => Ok(()),
             false => compared(pairs, &pools, built, steps),
         };
-        let mut all = rows(20, (stride, 9), blocks)?;
+        let mut all = rows(22, (stride, 9), blocks)?;
         if size == Size::Full {
             all.extend(rows(1, (8, 4), |pairs, feature, built| {
                 match of_pin(feature) {

@@ -87,15 +87,21 @@ pub enum Error {
     },
     /// Multipliers of links that were not found.
     #[error(
-        "step {step}: the velocities of the zones still differ by {defect:e} m/s at a link after {passes} passes"
+        "step {step}: the velocities of the zones still differ by {defect:.1e} m/s at link '{link}' after {passes} passes over an outer step of {dt:.4e} s{cause}"
     )]
     Link {
         /// Number of the outer step.
         step: u64,
+        /// Name of the link that is missed most.
+        link: String,
         /// Passes made.
         passes: usize,
         /// Largest defect of a row per sum of its coefficients, m/s.
         defect: f64,
+        /// Size of the outer step, s.
+        dt: f64,
+        /// Why, where that is known, and what would do.
+        cause: &'static str,
     },
     /// Constraints in a model whose zones step apart.
     #[error("constraint '{constraint}': zones of unequal steps have none; take equal steps")]

@@ -19,15 +19,26 @@ pub(crate) const MOST_PASSES: usize = 30;
 /// The same where links turn: H does not know that their forces turn with the rows, and passes gain a factor of three to ten.
 const MOST_TURNING_PASSES: usize = 60;
 
+/// Why passes do not end where links turn: what they leave out is the force of the link times what it turns its own rows in the step, of order DT².
+const TURNING: &str = "; passes over a link that turns leave out how its forces turn with it, which in this step is too much: take a smaller \
+                       outer step, or adaptive ones (time.step.adaptive), which are halved where passes do not end";
+const TURNING_ADAPTIVE: &str = "; passes over a link that turns leave out how its forces turn with it, which in this step is too much: take a \
+                                smaller smallest step in time.step.adaptive";
+
 impl Zones {
     /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
     /// (0 pointwise, 1 of the outer step) if not.
     pub(crate) fn corrected(&mut self, which: usize) -> Result<bool, Error> {
         let speed = self.speed();
-        let rows = self.defect.iter().zip(&self.norms);
-        let worst = rows.fold(0.0, |worst: f64, (d, n)| worst.max(d.abs() / n));
+        let rows = self.defect.iter().zip(&self.norms).enumerate();
+        let (worst, row) = rows.fold((0.0, 0), |worst: (f64, usize), (row, (d, n))| {
+            match d.abs() / n {
+                missed if missed > worst.0 => (missed, row),
+                _ => worst,
+            }
+        });
         let gains = self.moves.is_empty() || worst < GAIN * self.worst;
-        self.worst = worst;
+        (self.worst, self.worst_row) = (worst, row);
         if worst <= TOLERANCE * speed {
             return Ok(true);
         }
@@ -87,10 +98,19 @@ impl Zones {
     }
 
     pub(crate) fn parted(&self) -> Error {
+        let row = self.worst_row;
+        let link = self.links.iter().find(|(_, rows)| rows.contains(&row));
         Error::Link {
             step: self.step + 1,
+            link: link.map_or(String::new(), |(name, _)| name.clone()),
             passes: self.passes,
             defect: self.worst,
+            dt: self.dt,
+            cause: match (&self.turning, self.rules) {
+                (Some(_), None) => TURNING,
+                (Some(_), Some(_)) => TURNING_ADAPTIVE,
+                (None, _) => "",
+            },
         }
     }
 }

@@ -97,6 +97,7 @@ impl Zones {
             all_passes: 0,
             defect: vec![0.0; count],
             worst: 0.0,
+            worst_row: 0,
             free: [vec![0.0; count], vec![0.0; count]],
             pointwise: [vec![0.0; count], vec![0.0; count]],
             moves: Moves::default(),

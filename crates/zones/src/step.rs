@@ -68,8 +68,11 @@ impl Zones {
         self.judge_origins();
     }
 
-    /// Gives the zones back the states that inner steps have changed.
+    /// Gives the zones back the states that inner steps have changed, and the forces of links before the outer step.
     pub(crate) fn go_back(&mut self) {
+        for [_, last, before] in &mut self.mixes {
+            last.copy_from_slice(before);
+        }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] > 1
                 && let Some(saved) = &self.saved[k]

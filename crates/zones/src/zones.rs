@@ -123,6 +123,8 @@ pub struct Zones {
     pub(crate) defect: Vec<f64>,
     /// Largest defect of a row after the last pass, m/s.
     pub(crate) worst: f64,
+    /// The row that has it.
+    pub(crate) worst_row: usize,
     pub(crate) free: [Vec<f64>; 2],
     pub(crate) pointwise: [Vec<f64>; 2],
     /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step; where links turn, the

@@ -18,14 +18,9 @@
 
 use carom_algebra::tensor::Vec3;
 
-use super::products::{Configuration, DIRECTOR, MOST, Row, Rows};
+use super::products::{ALONG_R, ALONG_S, CROSSED, Configuration, DIRECTOR, MOST, Row, Rows};
 use super::section::{AtPoint, ElasticSection, STRAINS};
 use super::tying::{self, Covariant, Point};
-
-/// Coefficients of the nodes in g_r, g_s and x_h.
-pub(super) const ALONG_R: [f64; MOST] = [-0.25, 0.25, 0.25, -0.25];
-pub(super) const ALONG_S: [f64; MOST] = [-0.25, -0.25, 0.25, 0.25];
-pub(super) const CROSSED: [f64; MOST] = [0.25, -0.25, 0.25, -0.25];
 
 /// What the strains at the centre are made with.
 #[derive(Clone, Copy, Debug)]

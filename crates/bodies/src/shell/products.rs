@@ -1,4 +1,7 @@
 //! What strains of shells are sums of: products of ways between nodes, and of ways and axes of nodes.
+//!
+//! The ways v of a triangle are its edges from the first node, those of a quadrilateral g_r, g_s and x_h of x = x_m + r g_r + s g_s + r s x_h. Ways from the first node would do there too,
+//! but two of them are long where the cell is wide, and a strain along its short sides would be a difference of their squares: rounding times the square of the ratio of the sides.
 
 use carom_algebra::tensor::Vec3;
 
@@ -10,6 +13,30 @@ pub(super) const MOST: usize = 4;
 /// Products v·v, and v·a for one of the axes, at most.
 const PAIRS: usize = 6;
 const WITH_AXIS: usize = 12;
+
+/// Coefficients of the nodes of a quadrilateral in g_r, g_s and x_h; four times those of these in the places of the nodes.
+pub(super) const ALONG_R: [f64; MOST] = [-0.25, 0.25, 0.25, -0.25];
+pub(super) const ALONG_S: [f64; MOST] = [-0.25, -0.25, 0.25, 0.25];
+pub(super) const CROSSED: [f64; MOST] = [0.25, -0.25, 0.25, -0.25];
+
+/// Coefficients of the nodes in the ways.
+pub(super) fn in_ways(nodes: usize) -> &'static [[f64; MOST]; MOST - 1] {
+    const QUADRILATERAL: [[f64; MOST]; MOST - 1] = [ALONG_R, ALONG_S, CROSSED];
+    const TRIANGLE: [[f64; MOST]; MOST - 1] =
+        [[-1.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 1.0, 0.0], [0.0; MOST]];
+    match nodes {
+        3 => &TRIANGLE,
+        _ => &QUADRILATERAL,
+    }
+}
+
+/// Coefficients of the ways in Σ a_i x_i, the sum of the coefficients zero.
+fn over_ways(nodes: usize, a: &[f64; MOST]) -> [f64; MOST - 1] {
+    match nodes {
+        3 => [a[1], a[2], 0.0],
+        _ => in_ways(nodes).map(|way| 4.0 * way.iter().zip(a).map(|(w, a)| w * a).sum::<f64>()),
+    }
+}
 
 /// Places of the nodes, and their axes t₁, t₂, d.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +53,20 @@ impl Configuration {
             *x += axes[DIRECTOR] * offset;
         }
         beside
+    }
+
+    /// The ways of an element.
+    pub(super) fn ways(&self, nodes: usize) -> [Vec3; MOST - 1] {
+        let [a, b, c, d] = &self.x;
+        if nodes == 3 {
+            return [b - a, c - a, Vec3::zeros()];
+        }
+        let (low, high) = (b - a, c - d);
+        [
+            (low + high) * 0.25,
+            ((d - a) + (c - b)) * 0.25,
+            (high - low) * 0.25,
+        ]
     }
 
     /// Halfway between two.
@@ -141,9 +182,10 @@ impl Row {
     /// ½ (Σ a_i x_i)·(Σ b_j x_j), sums of coefficients zero.
     pub(super) fn half_metric(nodes: usize, a: &[f64; MOST], b: &[f64; MOST]) -> Row {
         let mut row = Row::default();
-        for i in 1..nodes {
-            for j in 1..nodes {
-                row.pairs[pair(i - 1, j - 1)] += 0.5 * a[i] * b[j];
+        let (a, b) = (over_ways(nodes, a), over_ways(nodes, b));
+        for (i, a) in a.iter().enumerate() {
+            for (j, b) in b.iter().enumerate() {
+                row.pairs[pair(i, j)] += 0.5 * a * b;
             }
         }
         row
@@ -156,9 +198,10 @@ impl Row {
         (axis, b): (usize, &[f64; MOST]),
     ) -> Row {
         let mut row = Row::default();
-        for i in 1..nodes {
-            for j in 0..nodes {
-                row.axes[axis][(i - 1) * nodes + j] += a[i] * b[j];
+        let a = over_ways(nodes, a);
+        for (i, a) in a.iter().enumerate().take(nodes - 1) {
+            for (j, b) in b.iter().enumerate().take(nodes) {
+                row.axes[axis][i * nodes + j] += a * b;
             }
         }
         row

@@ -8,12 +8,12 @@
 //! places and axes, as are the ones that replace them:
 //! shear and membrane strains that do not lock, from [`tying`](super::tying).
 //!
-//! A strain is therefore Σ c v_i·v_j + Σ c' v_i·a_j, with v_i = x_(i+1) - x_0 and the axes a. The element keeps c and c'.
+//! A strain is therefore Σ c v_i·v_j + Σ c' v_i·a_j, with the ways v of [`products`](super::products) and the axes a. The element keeps c and c'.
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
 use super::one_point::Centre;
-use super::products::{Configuration, MOST, Products, Rows, gradient, pair};
+use super::products::{Configuration, MOST, Products, Rows, gradient, in_ways, pair};
 use super::section::{AtPoint, STRAINS};
 use super::tying;
 
@@ -114,12 +114,8 @@ impl Form {
         sums
     }
 
-    fn ways(&self, of: &Configuration) -> [Vec3; MOST - 1] {
-        std::array::from_fn(|i| of.x[i + 1] - of.x[0])
-    }
-
     fn products(&self, of: &Configuration) -> Products {
-        let (v, n) = (self.ways(of), self.nodes);
+        let (v, n) = (of.ways(self.nodes), self.nodes);
         let mut products = Products::default();
         for i in 0..n - 1 {
             for j in i..n - 1 {
@@ -136,7 +132,7 @@ impl Form {
 
     /// Derivative of the strains at a configuration along a change of its places and axes.
     pub(super) fn changes(&self, of: &Configuration, by: &Configuration) -> Strains {
-        let (v, dv, n) = (self.ways(of), self.ways(by), self.nodes);
+        let (v, dv, n) = (of.ways(self.nodes), by.ways(self.nodes), self.nodes);
         let mut products = Products::default();
         for i in 0..n - 1 {
             for j in i..n - 1 {
@@ -171,7 +167,7 @@ impl Form {
     }
 
     fn gradient_of(&self, of: &Configuration, by: &Products) -> Gradient {
-        let (v, n) = (self.ways(of), self.nodes);
+        let (v, n) = (of.ways(self.nodes), self.nodes);
         let mut on_ways = [Vec3::zeros(); MOST - 1];
         let mut found = [[Vec3::zeros(); 2]; MOST];
         for i in 0..n - 1 {
@@ -191,9 +187,10 @@ impl Form {
                 found[j][1] += on_axis;
             }
         }
-        for (i, force) in on_ways.iter().enumerate().take(n - 1) {
-            found[i + 1][0] += force;
-            found[0][0] -= force;
+        for (force, way) in on_ways.iter().zip(in_ways(n)) {
+            for (found, part) in found.iter_mut().zip(way) {
+                found[0] += force * *part;
+            }
         }
         found
     }
@@ -211,38 +208,42 @@ impl Form {
     /// Symmetric second derivative by places and rotations of Σ forces · strains: calls `add` with the nodes, the parts (0 place, 1
     /// rotation) and the block.
     pub(super) fn curvature(&self, of: &Configuration, forces: &Strains, add: &mut AddBlock) {
-        let (v, n, by) = (self.ways(of), self.nodes, self.on_products(forces));
-        // a way is the difference of two places
-        let mut on_ways = |i: usize, other: (usize, usize), block: &Mat3| {
-            add([(i + 1, 0), other], block);
-            add([(0, 0), other], &-block);
-        };
+        let (v, n, by) = (of.ways(self.nodes), self.nodes, self.on_products(forces));
+        let parts = in_ways(n);
+        let (mut straight, mut turning) = ([[0.0; MOST]; MOST], [Mat3::zeros(); MOST]);
+        let mut mixed = [[Mat3::zeros(); MOST]; MOST];
         for i in 0..n - 1 {
             for j in 0..n - 1 {
                 let twice = if i == j { 2.0 } else { 1.0 };
-                let block = Mat3::identity() * (twice * by.pairs[pair(i, j)]);
-                on_ways(i, (j + 1, 0), &block);
-                on_ways(i, (0, 0), &-block);
+                let by = twice * by.pairs[pair(i, j)];
+                for (straight, a) in straight.iter_mut().zip(&parts[i]) {
+                    for (straight, b) in straight.iter_mut().zip(&parts[j]) {
+                        *straight += a * b * by;
+                    }
+                }
             }
-        }
-        for j in 0..n {
-            let mut turning = Mat3::zeros();
-            for i in 0..n - 1 {
-                let mut mixed = Mat3::zeros();
+            for j in 0..n {
+                let mut of_way = Mat3::zeros();
                 for (axis, by) in by.axes.iter().enumerate() {
                     let (axis, by) = (&of.axes[j][axis], by[i * n + j]);
-                    mixed -= axis.cross_matrix() * by;
+                    of_way -= axis.cross_matrix() * by;
                     let outer = axis * v[i].transpose();
-                    turning += ((outer + outer.transpose()) * 0.5
+                    turning[j] += ((outer + outer.transpose()) * 0.5
                         - Mat3::identity() * axis.dot(&v[i]))
                         * by;
                 }
-                for (node, sign) in [(i + 1, 1.0), (0, -1.0)] {
-                    add([(node, 0), (j, 1)], &(mixed * sign));
-                    add([(j, 1), (node, 0)], &(mixed.transpose() * sign));
+                for (mixed, a) in mixed.iter_mut().zip(&parts[i]) {
+                    mixed[j] += of_way * *a;
                 }
             }
-            add([(j, 1), (j, 1)], &turning);
+        }
+        for a in 0..n {
+            add([(a, 1), (a, 1)], &turning[a]);
+            for b in 0..n {
+                add([(a, 0), (b, 0)], &(Mat3::identity() * straight[a][b]));
+                add([(a, 0), (b, 1)], &mixed[a][b]);
+                add([(b, 1), (a, 0)], &mixed[a][b].transpose());
+            }
         }
     }
 }

@@ -205,6 +205,43 @@ fn a_warped_shell_turned_by_any_angle_stores_nothing() {
     }
 }
 
+/// A cell of 1 m by 10 mm, stretched along its short sides by 1e-6. The stress along them is that of the stretch up to the rounding of places, ε times the ratio of the sides, 2e-14, over the
+/// stretch: 2e-8. Products of the long ways from a node would round by ε times the square of the ratio, 2e-12, or 2e-6 of the stress.
+#[test]
+fn a_cell_a_hundred_times_as_wide_as_long_rounds_as_its_places_do() {
+    let mut mesh = Mesh::new(3);
+    let (width, length, stretch) = (1.0, 0.01, 1e-6);
+    mesh.nodes = vec![
+        [0.0; 3],
+        [length, 0.0, 0.0],
+        [length, width, 0.0],
+        [0.0, width, 0.0],
+    ];
+    let cells = vec![mesh.push(Kind::Quad4, &[0, 1, 2, 3])];
+    let unknowns = Unknowns::new(3, [NodeKind::Turning; 4]);
+    let spec = spec(cells, section(Rotations::Finite, 0.0));
+    let body = Body::new(&mesh, spec, &[0, 1, 2, 3], &unknowns).unwrap();
+    for angle in [0.0, 0.3, 2.0] {
+        let turn = Rotation::cayley(&Vec3::new(0.5 * angle, -0.8 * angle, angle));
+        let u = field(&mesh, &|x| {
+            let stretched = Vec3::new(x.x * (1.0 + stretch), x.y, 0.0);
+            [turn.matrix() * stretched - x, Vec3::zeros()]
+        });
+        let (still, frames) = (vec![0.0; u.len()], [turn; 4]);
+        let mut f = vec![0.0; u.len()];
+        let at = placement(&u, None, &frames, &still);
+        body.force(&at, &mut [], &mut Scratch::default(), &mut f)
+            .unwrap();
+        let strain = stretch + 0.5 * stretch * stretch;
+        let per_length = STEEL.young / (1.0 - STEEL.poisson.powi(2)) * THICKNESS * strain;
+        // half of the width, and the stretched tangent
+        let exact = turn.matrix() * Vec3::new(0.5 * width * per_length * (1.0 + stretch), 0.0, 0.0);
+        let found = Vec3::new(f[6] + f[12], f[7] + f[13], f[8] + f[14]) * 0.5;
+        let error = (found - exact).norm() / exact.norm();
+        assert!(error < 1e-7, "{angle}: {error:e}");
+    }
+}
+
 /// A motion of all nodes of size `part`.
 pub(crate) fn random_motion(random: &mut Random, part: f64) -> Vec<f64> {
     (0..54).map(|_| part * random.between(-1.0, 1.0)).collect()

@@ -9,7 +9,9 @@ use carom_bodies::{
     BeamSection, BeamTheory, BodySpec, CellWeights, Kinematics, MassKind, Rotations, SectionShape,
 };
 use carom_dynamics::scheme::{EnergyMomentum, Newmark, Theta};
-use carom_dynamics::{Driver, Model, ModelBody, ModelLink, Order, Scheme, Stepper, System};
+use carom_dynamics::{
+    Adaptive, Closing, Driver, Model, ModelBody, ModelLink, Order, Scheme, Stepper, System,
+};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::generate;
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned, Zones, glue_thin};
@@ -231,6 +233,48 @@ fn a_run_that_was_cut_while_links_turn_ends_in_the_same_bytes() {
         assert_eq!(other.saved().unwrap(), whole.saved().unwrap());
         assert_eq!(other.report(), whole.report());
     }
+}
+
+/// A shock of 4 m/s in steps of 2 ms: the link does most of a strain energy of the size of the whole energy, and passes circle. Steps of a fixed size say so and leave the state as it was; adaptive
+/// ones are halved.
+#[test]
+fn a_shock_that_turns_a_link_too_far_in_a_step_is_told_or_taken_in_halves() {
+    let zoned = thrown(2e-3);
+    let mut zones = Zones::new(&zoned).unwrap();
+    let mut steps = 0;
+    let error = loop {
+        let before = zones.state();
+        match zones.step() {
+            Ok(()) => steps += 1,
+            Err(error) => {
+                assert!(zones.state() == before, "the state is the one before");
+                break error.to_string();
+            }
+        }
+        assert!(steps < 50, "passes end");
+    };
+    for part in [
+        "'overlap'",
+        "2.0000e-3 s",
+        "turn",
+        "smaller",
+        "time.step.adaptive",
+    ] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+    let mut adaptive = zoned;
+    adaptive.model.adaptive = Some(Adaptive {
+        smallest: 2e-3 / 16.0,
+        closing: Closing::Cut,
+        growth: None,
+        patience: 10,
+    });
+    let mut zones = Zones::new(&adaptive).unwrap();
+    while zones.time() < 0.03 {
+        zones.step().unwrap();
+    }
+    let taken = zones.outer_step();
+    assert!(taken > 15, "some steps are halved: {taken}");
 }
 
 /// An attempt that is dropped leaves no trace in the mean of what places miss.
