@@ -181,9 +181,8 @@ impl ContactRecord {
 
 /// Time that a wave needs to pass over the smallest element, of the slower side of a contact, s.
 fn passage(system: &System, contact: usize) -> f64 {
-    let (secondary, primary) = system.sides[contact];
-    let sides = [Some(secondary), primary].into_iter().flatten();
-    let bodies = sides.map(|body| &system.bodies[body]);
+    let bodies = system.touching[contact].iter();
+    let bodies = bodies.map(|&body| &system.bodies[body]);
     bodies.map(Body::passage).fold(0.0, f64::max)
 }
 

@@ -142,7 +142,7 @@ impl Pair {
     }
 
     fn run(&self) -> Result<Outcome, Error> {
-        let mut driver = Driver::new(System::new(self.model()?)?)?;
+        let mut driver = Driver::new(crate::witness::system(self.model()?)?)?;
         let duration = 2.0 * LENGTHS[1] / wave_speed(&ALUMINIUM);
         let start = self.gap() / SPEED;
         let end = start + 1.3 * duration;

@@ -87,7 +87,7 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => (10, 300.0),
             Size::Full => (40, 20_000.0),
         };
-        let mut zones = Zones::new(&zoned(n)?)?;
+        let mut zones = crate::witness::zones(&zoned(n)?)?;
         if size == Size::Quick {
             zones.join()?;
         }

@@ -115,7 +115,7 @@ pub(crate) const CHECK: Check = Check {
 
 /// Amplitude of what comes back of a pulse of this width over the pulse's.
 fn reflected(bar: &GluedBar, width: f64, start: f64) -> Result<f64, Error> {
-    let mut zones = Zones::new(&bar.zoned()?)?;
+    let mut zones = crate::witness::zones(&bar.zoned()?)?;
     let border = (bar.zone - bar.overlap) as f64;
     let before = start * width;
     let start = motion(&zones, pulse(border - before, width));

@@ -147,5 +147,5 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             0.5 * LENGTH / elements as f64 / 30.0,
         )
     };
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }

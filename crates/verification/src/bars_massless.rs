@@ -21,7 +21,7 @@ use crate::figures::run;
 fn blocks(sliding: Sliding, own: f64) -> Result<Vec<Row>, Error> {
     let mut model = FINER.model(newmark(0.25, 0.5), DISPLACEMENT, sliding)?;
     model.contacts[0].massless = true;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut driver = Driver::new(system.clone())?;
     let mass = |k: usize| system.body_mass(k);
     let exact = [0.6 * 0.6 * 0.4 * 1000.0, 0.5 * 1000.0];

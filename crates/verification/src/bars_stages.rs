@@ -138,7 +138,7 @@ fn conserving(rows: &mut Vec<Row>) -> Result<(), Error> {
 }
 
 fn blocks() -> Result<[Row; 2], Error> {
-    let system = System::new(SMALLEST.model(LOVE, DISPLACEMENT, Sliding::Small)?)?;
+    let system = crate::witness::system(SMALLEST.model(LOVE, DISPLACEMENT, Sliding::Small)?)?;
     let mut driver = Driver::new(system)?;
     let start = driver.state().ledger.balance.energy();
     let (mut worst, mut impulse): (f64, f64) = (0.0, 0.0);

@@ -54,7 +54,7 @@ fn around(mesh: &Mesh, name: &str, body: &ModelBody) -> Result<Surface, Error> {
 }
 
 fn run(model: Model, steps: usize) -> Result<(Driver, Vec<f64>), Error> {
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut forces = Vec::new();
     for _ in 0..steps {
         driver.step()?;

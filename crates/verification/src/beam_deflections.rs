@@ -51,7 +51,7 @@ fn at_rest(
     };
     model.nonlinear.loads = vec![load];
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut driver = Driver::new(system)?;
     driver.step()?;
     let (system, u) = (driver.system(), &driver.state().motion.u);

@@ -159,7 +159,7 @@ fn error(patch: Patch, bar: &Spliced, change: Change) -> Result<f64, Error> {
     }];
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
     let mesh = model.mesh.clone();
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     driver.step()?;
     let system = driver.system();
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

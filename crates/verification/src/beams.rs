@@ -78,7 +78,7 @@ pub(crate) fn frequencies(
 
 /// The same of a model.
 pub(crate) fn frequencies_of(model: Model) -> Result<Vec<f64>, Error> {
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let free: Vec<usize> = (0..system.unknowns())
         .filter(|&i| !system.fixed[i])
         .collect();

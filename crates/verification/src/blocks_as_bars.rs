@@ -100,7 +100,7 @@ impl Blocks {
 
     /// Contact force per area by step, Pa.
     fn pressures(&self) -> Result<Vec<f64>, Error> {
-        let system = System::new(self.model()?)?;
+        let system = crate::witness::system(self.model()?)?;
         let area = if self.dim == 3 { 1.0 } else { THICKNESS };
         let mut run = Driver::new(system)?;
         // 2 L / c = 1 s

@@ -236,7 +236,7 @@ impl Patch {
 
     /// The blocks at the end of the static stage.
     fn loaded(&self) -> Result<Driver, Error> {
-        let mut newton = Driver::new(System::new(self.model()?)?)?;
+        let mut newton = Driver::new(crate::witness::system(self.model()?)?)?;
         for _ in 0..STAGE.1 {
             newton.step()?;
         }

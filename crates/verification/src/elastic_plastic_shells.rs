@@ -115,7 +115,7 @@ fn moment(ratio: f64) -> Result<f64, Error> {
             angle: Amplitude::new(vec![[0.0, 0.0], [1.0, -angle]])?,
         });
     }
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }

@@ -19,7 +19,7 @@ use crate::features::{Feature, label};
 const STEPS: u64 = 24;
 
 fn run(model: Model) -> Result<State, Error> {
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     while driver.state().step < STEPS {
         driver.step()?;
     }

@@ -149,7 +149,7 @@ impl Glued {
 
     /// Runs to `end` (s): figures of merit.
     pub(crate) fn run_to(&self, end: f64) -> Result<Figures, Error> {
-        let mut zones = Zones::new(&self.zoned()?)?;
+        let mut zones = crate::witness::zones(&self.zoned()?)?;
         if self.joined {
             zones.join()?;
         }

@@ -83,7 +83,7 @@ impl Spheres {
 
     fn rows(&self, steps: f64) -> Result<Vec<Row>, Error> {
         let exact = self.exact();
-        let system = System::new(self.model(steps)?)?;
+        let system = crate::witness::system(self.model(steps)?)?;
         let mut run = Driver::new(system)?;
         while run.state().time < 1.1 * exact.duration {
             run.step()?;

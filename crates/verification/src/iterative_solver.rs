@@ -93,7 +93,7 @@ fn driver(n: usize, fall: &Fall, solver: Solver) -> Result<Driver, Error> {
         ..Model::new(vec![block], mesh, (fall.scheme)(), step)
     };
     model.nonlinear.iteration.solver = solver;
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 /// Rows of one fall, and the products with the matrix in a step.

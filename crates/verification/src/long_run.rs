@@ -125,7 +125,7 @@ pub fn bounces(
             0.5 / elements as f64,
         )
     };
-    let Ok(system) = System::new(model) else {
+    let Ok(system) = crate::witness::system(model) else {
         return Ok(None);
     };
     let stretched: Vec<f64> = system.x.iter().map(|x| 0.5 * (1.0 - x[0])).collect();

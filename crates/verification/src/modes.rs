@@ -40,7 +40,7 @@ const SOLID: Elastic = Elastic {
 const ALONG: usize = 24;
 
 fn of(model: Model, count: usize) -> Result<Vec<Modes>, Error> {
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     Ok(modes(&system, count, &mut |_, _| {})?)
 }
 

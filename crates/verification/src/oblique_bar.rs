@@ -100,7 +100,12 @@ struct Impact {
 }
 
 fn strike(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Result<Impact, Error> {
-    let mut newton = Driver::new(System::new(model(size, scheme, law, integration)?)?)?;
+    let mut newton = Driver::new(crate::witness::system(model(
+        size,
+        scheme,
+        law,
+        integration,
+    )?)?)?;
     while newton.state().time < END {
         newton.step()?;
     }

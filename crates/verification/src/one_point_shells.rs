@@ -52,7 +52,12 @@ fn flying(offset: f64, steps: usize) -> Result<Vec<Row>, Error> {
     made.spec.formulation = Formulation::Reduced { hourglass: 0.05 };
     (made.spin, made.velocity) = ([6.0, 4.0, 12.0], [0.3, -0.2, 0.1]);
     let dt = 2e-4;
-    let mut driver = Driver::new(System::new(Model::new(vec![made], mesh, CENTRAL, dt))?)?;
+    let mut driver = Driver::new(crate::witness::system(Model::new(
+        vec![made],
+        mesh,
+        CENTRAL,
+        dt,
+    ))?)?;
     let mut strain = 0.0_f64;
     for _ in 0..steps {
         driver.step()?;

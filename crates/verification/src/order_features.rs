@@ -37,7 +37,7 @@ fn end(scheme: Scheme, material: Material, steps: u64) -> Result<Vec<f64>, Error
         amplitude: Amplitude::new(vec![[0.0, 0.0], [END, 1.0]])?,
     }];
     model.nonlinear.iteration.tolerance = 1e-12;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let velocity: Vec<f64> = system
         .x
         .iter()

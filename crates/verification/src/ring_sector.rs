@@ -105,7 +105,7 @@ impl Ring {
         let mut body = ring_body(&mesh, "sector")?;
         body.spec.cells.extend(&mesh.groups["rest"].elements);
         let dt = self.dt / f64::from(SUBSTEPS);
-        let mut newton = Driver::new(System::new(self.model(mesh, vec![body], dt)?)?)?;
+        let mut newton = Driver::new(crate::witness::system(self.model(mesh, vec![body], dt)?)?)?;
         let mut forces = Vec::new();
         while forces.len() < (self.end / self.dt).round() as usize {
             let mut sum = 0.0;
@@ -139,7 +139,7 @@ impl Ring {
         let zone = |body: usize, scheme, substeps| {
             ModelZone::new(["sector", "rest"][body], vec![body], (scheme, substeps))
         };
-        let mut zones = Zones::new(&Zoned {
+        let mut zones = crate::witness::zones(&Zoned {
             zones: vec![zone(0, theta(THETA), SUBSTEPS), zone(1, self.outer, 1)],
             links,
             kind: LinkKind::PrakashHjelmstad,

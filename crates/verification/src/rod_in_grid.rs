@@ -133,7 +133,7 @@ fn stop(
 }
 
 fn rows(scheme: Scheme, law: Option<Law>, [dt, end]: [f64; 2]) -> Result<Vec<Row>, Error> {
-    let mut driver = Driver::new(System::new(model(scheme, law, dt, end)?)?)?;
+    let mut driver = Driver::new(crate::witness::system(model(scheme, law, dt, end)?)?)?;
     let mut input = 0.0_f64;
     let mut before = 0.0;
     let steps = (end / dt).round() as usize;

@@ -59,7 +59,7 @@ fn rolling(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
     let (down, along) = (-MASS * GRAVITY / STIFFNESS, [SPEED, 0.0, 0.0]);
     (model.discrete[0].displacement, model.discrete[0].velocity) =
         (Some([0.0, down, 0.0]), Some(along));
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let left = 3.0 * FRICTION * GRAVITY * dt;
     let rate = |v: &[f64]| v[0] + RADIUS * v[2];
     let last = slide(&mut driver, 2.0 * roll, (rate, left))?;
@@ -117,7 +117,7 @@ fn wheels(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
         fix: [true; 3],
         fix_rotations: [false; 3],
     });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let (u, mut v) = (
         driver.state().motion.u.clone(),
         driver.state().motion.v.clone(),

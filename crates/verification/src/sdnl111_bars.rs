@@ -78,7 +78,7 @@ fn rows((elements, errors, mean_error): (usize, [&str; 5], f64)) -> Result<Vec<R
         },
         2e-3,
     )?;
-    let system = System::new(model(elements, young)?)?;
+    let system = crate::witness::system(model(elements, young)?)?;
     let node = system.contacts[0].points[0].node() as usize;
     let mut driver = Driver::new(system)?;
     let (mut rows, mut last) = (Vec::new(), (0.0, 0.0));

@@ -89,7 +89,7 @@ impl Hairpin {
             ..Model::new(vec![made], mesh, scheme, self.dt)
         };
         model.nonlinear.iteration.tolerance = 1e-12;
-        let system = System::new(model)?;
+        let system = crate::witness::system(model)?;
         let mut velocity = vec![0.0; system.unknowns()];
         for (node, x) in system.x.iter().enumerate() {
             let lower = usize::from(x[2] < 0.0);

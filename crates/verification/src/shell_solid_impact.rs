@@ -299,7 +299,7 @@ fn impact(plate: Plate, until: f64, dt: f64) -> Result<Impact, Error> {
     };
     // the work that is compared is that of factors
     model.nonlinear.iteration.solver = Solver::Direct;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let unknowns = system.unknowns();
     let mut driver = Driver::new(system)?;
     while driver.state().time < until {

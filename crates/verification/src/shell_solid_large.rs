@@ -128,7 +128,7 @@ fn elastica(load: f64, steps: u64) -> Result<[f64; 2], Error> {
     model.nonlinear.preload = Some(Preload { end: 1.0, steps });
     let corner = |x: &[f64; 3]| x[0] == 0.0 && x[2].abs() < 1e-9;
     let tip = strip.of_solid(&model.mesh, &corner)[0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }

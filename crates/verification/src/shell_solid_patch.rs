@@ -182,7 +182,7 @@ fn error(patch: Patch, plate: &Plate, change: Change) -> Result<f64, Error> {
     };
     model.nonlinear.nodal = loads(patch, &plate, &mesh);
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     driver.step()?;
     let system = driver.system();
     let first = plate.first(&mesh) as usize;

@@ -144,7 +144,7 @@ pub(crate) fn loaded(
     };
     model.nonlinear.preload = Some(Preload { end: 1.0, steps });
     model.nonlinear.nodal = held.loads;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for step in 0..steps {
         driver.step()?;
         visit((step + 1) as f64 / steps as f64, &driver);

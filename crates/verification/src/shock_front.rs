@@ -105,8 +105,8 @@ fn bar(
         supports,
         ..Model::new(vec![body], mesh, CENTRAL, f64::MIN_POSITIVE)
     };
-    model.dt = 0.4 * System::new(model.clone())?.critical_step();
-    Ok(Driver::new(System::new(model)?)?)
+    model.dt = 0.4 * crate::witness::system(model.clone())?.critical_step();
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 fn show(driver: &Driver) -> Shown {

@@ -128,7 +128,7 @@ impl Rough {
         let foot = surface(&mesh, "block.bottom", &bodies[0])?;
         let mut rubbing = contact(foot, ModelTarget::Rigid(floor), self.law);
         rubbing.friction = self.mu;
-        let system = System::new(Model {
+        let system = crate::witness::system(Model {
             contacts: vec![rubbing],
             supports,
             gravity: self.gravity,

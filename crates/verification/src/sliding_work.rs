@@ -239,7 +239,7 @@ impl Slide {
     }
 
     fn find(&self, steps: usize) -> Result<Found, Error> {
-        let system = System::new(self.model()?)?;
+        let system = crate::witness::system(self.model()?)?;
         let weight = SOFT.density * HEIGHT * GRAVITY;
         let linear = self.mu == 0.0 && !self.scheme.get().is_between();
         let mut run: Box<dyn Stepper> = match linear {

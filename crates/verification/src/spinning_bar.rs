@@ -50,7 +50,7 @@ fn newton(scheme: Scheme, tolerance: f64) -> Result<Driver, Error> {
         1.0 / STEPS as f64,
     );
     model.nonlinear.iteration.tolerance = tolerance;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let spin = |node: &[f64; 3]| [-SPIN * node[1], SPIN * node[0]];
     let velocity: Vec<f64> = system.x.iter().flat_map(spin).collect();
     let mut newton = Driver::new(system)?;

@@ -67,7 +67,7 @@ fn cantilever(
         end: 1e-3,
         steps: 2,
     });
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 fn tip(driver: &Driver, elements: usize, order: Order) -> f64 {

@@ -27,7 +27,7 @@ fn rows(scheme: Scheme, end: &str) -> Result<[Row; 3], Error> {
     let held = support(&model.mesh, end, [true, false, false])?;
     model.supports.push(held);
     model.gravity = [1e3, 0.0, 0.0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     march(&mut driver, SLOW.duration(), &mut [], &|| false)?;
     let ledger = &driver.state().ledger;
     let row = |what: &str| format!("{scheme:?}, {end}: {what}");

@@ -46,7 +46,7 @@ pub(crate) const CHECK: Check = Check {
             depth: 5.0,
         };
         let model = tori.model(Scheme::EnergyMomentum(EnergyMomentum {}), NOW, 0.05)?;
-        let mut newton = Driver::new(System::new(model)?)?;
+        let mut newton = Driver::new(crate::witness::system(model)?)?;
         let mut kept = Kept::new(newton.system(), newton.state());
         let energy = newton.state().ledger.initial.energy();
         let (mut closed, mut strained, mut iterations, mut attempts) = (0, 0.0_f64, 0, 0);

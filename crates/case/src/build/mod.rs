@@ -189,7 +189,7 @@ impl Builder<'_> {
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let mut contacts = self.contacts(&mesh, &bodies, &cells);
         self.listed_twice(&contacts);
-        contacts.extend(self.general_contact(&mesh, (&bodies, &cells), &contacts));
+        contacts.extend(self.general_contact(&mesh, (&bodies, &cells), (&contacts, &joints)));
         self.contacts_of_deleted(&bodies, &contacts);
         contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.nonlinear_in_zones();

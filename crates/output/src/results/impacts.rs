@@ -101,9 +101,8 @@ impl Impacts {
                 mean: PeakOfMean::new(window),
                 window,
                 of_parts: zoning.is_some_and(|zoning| {
-                    let (secondary, primary) = system.sides[contact];
-                    let sides = [Some(secondary), primary];
-                    sides.iter().flatten().any(|body| zoning.is_part(*body))
+                    let mut bodies = system.touching[contact].iter();
+                    bodies.any(|body| zoning.is_part(*body))
                 }),
                 closed: 0.0,
                 peak_friction: 0.0,
