@@ -88,6 +88,11 @@ impl Exchange {
         }
     }
 
+    /// Whether it is of this system.
+    pub(crate) fn is_of(&self, system: &System) -> bool {
+        self.parts.len() == system.parts.len()
+    }
+
     /// Makes this the exchange of the state before the step.
     pub(crate) fn follow(&mut self, before: &Exchange) {
         self.parts.clone_from(&before.parts);

@@ -219,6 +219,21 @@ impl Records {
         }
     }
 
+    /// Whether they are of this system.
+    pub fn are_of(&self, system: &System) -> bool {
+        let (contacts, points) = (system.contacts.len(), system.points());
+        let small = &self.small;
+        self.contacts.len() == contacts
+            && self.opened.len() == points
+            && [0, points].contains(&self.loose.len())
+            && small.bodies.len() == system.bodies.len()
+            && small.contacts.len() == contacts
+            && self
+                .impacts
+                .iter()
+                .all(|impact| (impact.contact as usize) < contacts)
+    }
+
     /// Starts the clocks of the contacts at the end of a static stage: what is compressed there closes with the first step of the
     /// dynamics.
     pub(crate) fn begin_dynamics(&mut self) {

@@ -56,7 +56,11 @@ impl Checkpoint {
     /// # Errors
     /// [`Error::Checkpoint`], of a file whose checksum is right and content wrong.
     pub fn costs(&self) -> Result<carom_dynamics::Costs, Error> {
-        decode(&self.costs)
+        let costs: carom_dynamics::Costs = decode(&self.costs)?;
+        match costs.are_times() {
+            true => Ok(costs),
+            false => Err(refused(Path::new(FOLDER), "it has times that no run takes")),
+        }
     }
 
     /// What the results have gathered.
@@ -202,6 +206,14 @@ pub fn read(path: &Path) -> Result<Checkpoint, Error> {
         gathered: part()?,
         head: head.clone(),
     })
+}
+
+/// A checkpoint whose content is not of the run in whose folder it is.
+pub(crate) fn of_another_run(folder: &Path) -> Error {
+    refused(
+        &folder.join(FOLDER),
+        "what the results had gathered belongs to another run",
+    )
 }
 
 /// The first line without its end, and what follows it.

@@ -77,9 +77,7 @@ pub(crate) fn write(path: &Path, instants: &[(f64, PathBuf)]) -> Result<(), Erro
 }
 
 /// The grid of the first instant, and what arrays there are; nothing without instants.
-fn survey(
-    instants: &[(f64, PathBuf)],
-) -> Result<Option<(Stored, BTreeMap<Key, Array>)>, Error> {
+fn survey(instants: &[(f64, PathBuf)]) -> Result<Option<(Stored, BTreeMap<Key, Array>)>, Error> {
     let mut grid: Option<Stored> = None;
     let mut arrays: BTreeMap<Key, (Array, Numbers)> = BTreeMap::new();
     for (number, (_, file)) in instants.iter().enumerate() {
@@ -118,7 +116,11 @@ fn parts(found: Stored) -> impl Iterator<Item = (Key, usize, Numbers)> {
     let points = Numbers::Reals(found.points.into_flattened());
     let fields = found.arrays.into_iter().map(|field| {
         let (of_points, name) = (field.of_points, field.name);
-        (Key::Field { of_points, name }, field.components.max(1), field.values)
+        (
+            Key::Field { of_points, name },
+            field.components.max(1),
+            field.values,
+        )
     });
     std::iter::once((Key::Points, 3, points)).chain(fields)
 }
@@ -152,9 +154,10 @@ impl Array {
         }
         let same = match (&*last, &new) {
             (Numbers::Integers(last), Numbers::Integers(new)) => last == new,
-            (Numbers::Reals(last), Numbers::Reals(new)) => {
-                last.iter().zip(new).all(|(a, b)| a.to_bits() == b.to_bits())
-            }
+            (Numbers::Reals(last), Numbers::Reals(new)) => last
+                .iter()
+                .zip(new)
+                .all(|(a, b)| a.to_bits() == b.to_bits()),
             _ => return None,
         };
         if !same {
@@ -199,10 +202,13 @@ impl Array {
 
 /// Adds arrays to a file, with their values of all instants.
 fn add(place: &Path, instants: &[(f64, PathBuf)], batch: &[(&Key, &Array)]) -> Result<(), Error> {
-    let mut gathered: BTreeMap<&Key, (&Array, Option<Numbers>)> =
-        batch.iter().map(|(key, array)| (*key, (*array, None))).collect();
+    let mut gathered: BTreeMap<&Key, (&Array, Option<Numbers>)> = batch
+        .iter()
+        .map(|(key, array)| (*key, (*array, None)))
+        .collect();
     for (number, (_, file)) in instants.iter().enumerate() {
-        let wanted = |(array, _): &(&Array, Option<Numbers>)| array.own.binary_search(&number).is_ok();
+        let wanted =
+            |(array, _): &(&Array, Option<Numbers>)| array.own.binary_search(&number).is_ok();
         if !gathered.values().any(wanted) {
             continue;
         }
@@ -218,8 +224,14 @@ fn add(place: &Path, instants: &[(f64, PathBuf)], batch: &[(&Key, &Array)]) -> R
     for (key, (array, values)) in gathered {
         let name = match key {
             Key::Points => "Points".to_owned(),
-            Key::Field { of_points: true, name } => format!("PointData/{name}"),
-            Key::Field { of_points: false, name } => format!("CellData/{name}"),
+            Key::Field {
+                of_points: true,
+                name,
+            } => format!("PointData/{name}"),
+            Key::Field {
+                of_points: false,
+                name,
+            } => format!("CellData/{name}"),
         };
         let put = |data: &mut DatasetBuilder| {
             match &values {

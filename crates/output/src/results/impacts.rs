@@ -87,6 +87,13 @@ impl ContactTotals {
     }
 }
 
+impl Told {
+    /// Whether it is of so many contacts.
+    pub(crate) fn is_of(&self, contacts: usize) -> bool {
+        self.contacts.len() == contacts && self.rows.len() <= SHOWN
+    }
+}
+
 impl Impacts {
     pub(crate) fn create(
         folder: &mut Folder,

@@ -49,6 +49,22 @@ pub(crate) struct Largest {
 }
 
 impl Still {
+    /// Whether it is of this system.
+    pub(crate) fn is_of(&self, system: &System, seen: &Seen) -> bool {
+        let (nodes, cells) = (seen.nodes.len(), seen.cells.len());
+        let (all, bodies) = (seen.body_of_cell.len(), system.bodies.len());
+        let contact = if system.contacts.is_empty() { 0 } else { nodes };
+        let largest = self.largest.iter().flatten();
+        self.time.is_finite()
+            && [self.moved.len(), self.speed.len()] == [nodes; 2]
+            && self.contact.len() == contact
+            && [self.von_mises.len(), self.pressure.len()] == [cells; 2]
+            && self.plastic.as_ref().is_none_or(|own| own.len() == cells)
+            && self.deleted.as_ref().is_none_or(|own| own.len() == all)
+            && [self.kinetic.len(), self.strain.len()] == [bodies; 2]
+            && largest.into_iter().all(|one| (one.cell as usize) < all)
+    }
+
     /// Of an accepted state.
     pub(crate) fn of(
         system: &System,
