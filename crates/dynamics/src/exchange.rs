@@ -88,9 +88,10 @@ impl Exchange {
         }
     }
 
-    /// Whether it is of this system.
-    pub(crate) fn is_of(&self, system: &System) -> bool {
-        self.parts.len() == system.parts.len()
+    /// Whether it is of this system at a step: it begins with the dynamics.
+    pub(crate) fn is_of(&self, system: &System, step: u64) -> bool {
+        let begins = step <= system.static_steps();
+        self.parts.len() == system.parts.len() || begins && self.parts.is_empty()
     }
 
     /// Makes this the exchange of the state before the step.

@@ -212,7 +212,7 @@ impl State {
                 .all(|force| [0, n].contains(&force.len()))
             && self.links.are_of(system)
             && self.records.are_of(system)
-            && self.exchange.is_of(system)
+            && self.exchange.is_of(system, self.step)
             && self.shapes.are_of(system);
         let cause = match (fits, self.time >= 0.0 && self.time.is_finite()) {
             (true, true) => return Ok(()),

@@ -10,7 +10,7 @@
 //! and say why. What was cut at an instant and resumed must have the same bytes.
 
 use carom_contact::Law;
-use carom_dynamics::{Adaptive, Closing, Driver, Scheme, State, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Scheme, State};
 
 use crate::Error;
 use crate::bars::{Against, Run, SLOW};

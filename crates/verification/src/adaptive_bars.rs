@@ -13,7 +13,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Initial, Law};
-use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelContact, ModelTarget, Scheme, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelContact, ModelTarget, Scheme};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Elastic;
 use carom_mesh::generate;

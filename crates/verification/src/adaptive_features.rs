@@ -8,7 +8,7 @@
 //! iterations may leave over, at most 1e-7.
 
 use carom_contact::{Basis, Integration, Law, Sliding};
-use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelTarget, Scheme};
 use carom_materials::Plane;
 
 use crate::Error;

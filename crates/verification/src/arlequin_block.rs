@@ -10,10 +10,10 @@
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Sphere;
-use carom_dynamics::{Costs, Driver, Model, ModelBody, ModelLink, ModelTarget, Solver, System};
+use carom_dynamics::{Costs, Driver, Model, ModelBody, ModelLink, ModelTarget, Solver};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::{CENTRAL, HALF, body, contact, group, surface, theta};

@@ -23,7 +23,7 @@
 
 use carom_dynamics::Scheme;
 use carom_dynamics::scheme::Newmark;
-use carom_zones::{LinkKind, Zones};
+use carom_zones::LinkKind;
 
 use crate::Error;
 use crate::build::CENTRAL;

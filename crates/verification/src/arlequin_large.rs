@@ -11,7 +11,7 @@ use carom_bodies::{CellWeights, Kinematics};
 use carom_dynamics::{Model, ModelLink};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::{CENTRAL, body, group, theta};

@@ -13,7 +13,6 @@
 //! Tolerance: one unit of the printed digit, or 2 % of the number where that is more.
 
 use carom_arlequin::{Coupling, Mediator, Model as Side, Profile, Weighting};
-use carom_zones::Zones;
 
 use crate::Error;
 use crate::check::{Check, Row};

@@ -12,7 +12,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::Plane;
-use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, march};
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};

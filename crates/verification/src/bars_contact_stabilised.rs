@@ -11,7 +11,7 @@
 use carom_bodies::MassKind;
 use carom_contact::Sliding;
 use carom_dynamics::scheme::ContactStabilised;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::bars::{Against, Run};

@@ -8,7 +8,7 @@
 //! contact changes by P Δg / 2 in steps where a point closes or opens, and the force error are regressions, to 1 %.
 
 use carom_contact::Sliding;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 use carom_system::Error as Refusal;
 
 use crate::Error;

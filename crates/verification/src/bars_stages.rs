@@ -15,7 +15,7 @@ use carom_contact::Law;
 use carom_contact::Sliding;
 use carom_contact::law::{Capture, Restitution};
 use carom_dynamics::scheme::{Krenk, LaursenLove, NonsmoothAlpha, PaoliSchatzman};
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::bars::{Against, Run};

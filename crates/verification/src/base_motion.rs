@@ -26,7 +26,7 @@ use carom_bodies::{Curve, Kinematics, MassKind};
 use carom_contact::law::Level;
 use carom_contact::{Law, Plane};
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelBody, ModelTarget, Prescribed, Scheme, Support, System,
+    Amplitude, Driver, Model, ModelBody, ModelTarget, Prescribed, Scheme, Support,
 };
 use carom_materials::Elastic;
 use carom_mesh::generate;

@@ -22,7 +22,7 @@
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, SectionShape};
 use carom_contact::law::{Adhesion, Capture, Crush, Curve, Damped, Penalty, Stop};
 use carom_contact::{Initial, Law, Sliding};
-use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Preload, State, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Preload, State};
 use carom_mesh::{ElementId, Mesh, Surface, generate};
 
 use crate::Error;

@@ -10,7 +10,7 @@
 //! condition of about (L/h)⁴ n⁴ ε = 1e-7 at 20 elements in the worst case, of which the smooth deflection sees a small part.
 
 use carom_bodies::{BeamSection, BeamTheory, SectionForces};
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Preload, Support, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Preload, Support};
 use carom_mesh::Mesh;
 
 use crate::Error;

@@ -18,7 +18,7 @@ use carom_bodies::{
     BeamSection, BeamTheory, DiscreteKind, DiscreteSpec, FluidGap, Kinematics, MassKind, Release,
     SectionShape,
 };
-use carom_dynamics::{Damping, Driver, Model, ModelBody, ModelConstraint, ModelDiscrete, System};
+use carom_dynamics::{Damping, Driver, Model, ModelBody, ModelConstraint, ModelDiscrete};
 use carom_dynamics::{NodalLoad, Order};
 use carom_elements::Kind;
 use carom_mesh::{Mesh, generate};

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use carom_bodies::BeamTheory;
-use carom_dynamics::{Driver, Model, System};
+use carom_dynamics::{Driver, Model};
 
 use crate::Error;
 use crate::beams::{exact, section, straight};

@@ -15,7 +15,7 @@
 use carom_algebra::tensor::Vec3;
 use carom_arlequin::Weighting;
 use carom_bodies::BeamTheory;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme};
 use carom_materials::Elastic;
 
 use crate::Error;

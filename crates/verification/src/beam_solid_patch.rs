@@ -19,7 +19,7 @@
 use carom_arlequin::{Profile, Row as Coupled, Weighting};
 use carom_bodies::BeamTheory;
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support, System,
+    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support,
 };
 use carom_materials::Elastic;
 

@@ -2,7 +2,7 @@
 
 use carom_algebra::dense_eigen::eigenvalues;
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, Scratch, SectionShape};
-use carom_dynamics::{Model, ModelBody, Scheme, Support, System};
+use carom_dynamics::{Model, ModelBody, Scheme, Support};
 use carom_exact::beam;
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};

@@ -13,7 +13,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::Law;
 use carom_contact::law::Adhesion;
-use carom_dynamics::{Driver, Model, Scheme, System, march};
+use carom_dynamics::{Driver, Model, Scheme, march};
 use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;

@@ -14,7 +14,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
-use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme};
 use carom_materials::{Elastic, Law as Material, StVenantKirchhoff};
 use carom_mesh::{Mesh, generate};
 

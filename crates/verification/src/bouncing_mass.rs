@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use carom_dynamics::{Driver, Model, Scheme, System};
+use carom_dynamics::{Driver, Model, Scheme};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};

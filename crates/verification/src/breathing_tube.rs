@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::{Formulation, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, Nonlinear, Scheme};
 use carom_materials::{Elastic, Law, MooneyRivlin, NeoHooke, StVenantKirchhoff};
 use carom_mesh::generate;
 

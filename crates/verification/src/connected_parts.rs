@@ -16,9 +16,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Motion, Obstacle, Plane, Sliding, Translation};
-use carom_dynamics::{
-    Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelTarget, Nonlinear, System,
-};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelTarget, Nonlinear};
 use carom_materials::{Elastic, Law as Material, NeoHooke, StVenantKirchhoff};
 use carom_mesh::{Mesh, generate};
 

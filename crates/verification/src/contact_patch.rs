@@ -17,7 +17,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::Adhesion;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelTarget, Nonlinear, Preload, Prescribed, Support, System,
+    Amplitude, Driver, Model, ModelTarget, Nonlinear, Preload, Prescribed, Support,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke, Plane};
 use carom_mesh::raise::raise;

@@ -16,7 +16,7 @@ use std::path::Path;
 
 use carom_bodies::Kinematics;
 use carom_contact::{Motion, Obstacle, Plane, RigidSurface, Translation};
-use carom_dynamics::{Driver, Model, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;
 use carom_mesh::read::read;

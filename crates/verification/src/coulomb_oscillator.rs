@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::Curve;
 use carom_contact::Law;
-use carom_dynamics::{Driver, Model, Scheme, System};
+use carom_dynamics::{Driver, Model, Scheme};
 
 use crate::Error;
 use crate::build::{DISPLACEMENT, NOW, newmark, plane, theta};

@@ -25,7 +25,7 @@
 use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, State, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, State, Stepper};
 use carom_materials::{Elastic, J2Plasticity, Law, Plane};
 use carom_mesh::{Mesh, Surface, generate};
 

@@ -14,7 +14,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::{
-    Amplitude, Driver, Load, LoadKind, Model, ModelBody, Preload, Prescribed, Scheme, System,
+    Amplitude, Driver, Load, LoadKind, Model, ModelBody, Preload, Prescribed, Scheme,
 };
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::generate;

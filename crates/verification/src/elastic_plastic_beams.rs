@@ -35,7 +35,7 @@ use carom_bodies::{
 };
 use carom_dynamics::{
     Amplitude, Driver, Model, ModelBody, ModelDiscrete, NodalLoad, Preload, Prescribed,
-    PrescribedTurn, Scheme, System,
+    PrescribedTurn, Scheme,
 };
 use carom_elements::Kind;
 use carom_materials::{Elastic, J2Plasticity, Law};

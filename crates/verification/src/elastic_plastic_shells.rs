@@ -13,7 +13,7 @@
 //! squares, 1.5e-3 of them at yield: 2e-3 where nothing flows.
 
 use carom_bodies::{Formulation, Kinematics, MassKind, Rotations, ShellSection};
-use carom_dynamics::{Driver, Model, NodalLoad, Preload, PrescribedTurn, System};
+use carom_dynamics::{Driver, Model, NodalLoad, Preload, PrescribedTurn};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_signals::Amplitude;
 

@@ -8,7 +8,7 @@
 //! they are not exact, and the trapezoid with the displacement law multiplies what they leave.
 
 use carom_contact::Sliding;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme, State, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme, State};
 
 use crate::Error;
 use crate::battery::is_senseless;

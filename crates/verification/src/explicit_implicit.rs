@@ -8,7 +8,7 @@
 //! Full integration, mean dilatation and one point.
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, Scheme, State, System};
+use carom_dynamics::{Driver, Model, ModelBody, Scheme, State};
 use carom_materials::{Elastic, Law, NeoHooke, Plane};
 use carom_mesh::generate;
 

@@ -1,6 +1,6 @@
 //! Histories of a contact, and the figures of merit of bars against the exact solution.
 
-use carom_dynamics::{Driver, Observer, Stepper, System, march};
+use carom_dynamics::{Driver, Observer, Stepper, march};
 
 use crate::Error;
 use crate::bars::Run;

@@ -11,8 +11,7 @@
 
 use carom_algebra::tensor::Vec3;
 use carom_dynamics::scheme::CentralDifference;
-use carom_dynamics::{Driver, Model, Order, Scheme, System};
-use carom_zones::Zones;
+use carom_dynamics::{Driver, Model, Order, Scheme};
 
 use crate::Error;
 use crate::build::{newmark, theta};

@@ -11,7 +11,7 @@ use carom_dynamics::{
 };
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
-use carom_zones::{Glued, LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{Glued, LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::{newmark, surface};

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_contact::{Basis, Integration};
-use carom_dynamics::{Amplitude, Driver, Model, Preload, Prescribed, System};
+use carom_dynamics::{Amplitude, Driver, Model, Preload, Prescribed};
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;

@@ -20,7 +20,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
 use carom_exact::hertz::{Collision, reduced_mass};
 use carom_materials::{Law as Material, NeoHooke};
 

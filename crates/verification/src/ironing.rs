@@ -30,7 +30,6 @@ use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
     Amplitude, Driver, Iteration, Model, ModelBody, ModelTarget, Nonlinear, Preload, Prescribed,
-    System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, read};

@@ -12,7 +12,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::Law;
-use carom_dynamics::{Driver, Model, Scheme, Solver, System};
+use carom_dynamics::{Driver, Model, Scheme, Solver};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
 

@@ -8,7 +8,7 @@
 //! rounding of its largest part.
 
 use carom_bodies::Curve;
-use carom_dynamics::{Driver, Model, Scheme, System};
+use carom_dynamics::{Driver, Model, Scheme};
 
 use crate::Error;
 use crate::build::{newmark, theta};

@@ -19,7 +19,7 @@ use carom_bodies::{
     Rotations, SectionShape,
 };
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelBody, ModelDiscrete, NodalLoad, Preload, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelDiscrete, NodalLoad, Preload, Scheme};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, generate};

@@ -11,9 +11,7 @@
 
 use carom_bodies::Rotations;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{
-    Driver, Model, ModelBody, Preload, Prescribed, PrescribedTurn, Scheme, System,
-};
+use carom_dynamics::{Driver, Model, ModelBody, Preload, Prescribed, PrescribedTurn, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
 use carom_signals::Amplitude;

@@ -10,9 +10,7 @@
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Capture;
 use carom_contact::{Law, Plane};
-use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, march,
-};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, march};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 

@@ -13,7 +13,7 @@
 use std::f64::consts::PI;
 
 use carom_bodies::Curve;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark};

@@ -22,7 +22,7 @@ use std::path::Path;
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, Nonlinear, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::read::read;
 

@@ -9,7 +9,7 @@
 //! its stiffness, 1.5 % with 8; 3 %. Momenta: rounding of 10⁴ steps, 1e-10. Energy: central differences keep it to (ω dt)²/4 of the vibration, here 1e-3 of all; 1e-3.
 
 use carom_bodies::{Formulation, MassKind, Rotations};
-use carom_dynamics::{Driver, Model, System};
+use carom_dynamics::{Driver, Model};
 use carom_materials::Elastic;
 
 use crate::Error;

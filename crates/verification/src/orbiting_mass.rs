@@ -15,7 +15,7 @@
 use std::f64::consts::TAU;
 
 use carom_contact::{Cylinder, Obstacle, Profile, Side};
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};

@@ -8,7 +8,7 @@
 //! smaller.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, Scheme, System, march};
+use carom_dynamics::{Driver, Model, Scheme, march};
 use carom_mesh::generate;
 
 use crate::Error;

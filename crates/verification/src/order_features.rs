@@ -7,7 +7,7 @@
 //! where terms of the next order are of ω dt = 0.03 for the fastest mode, and halve.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme};
 use carom_materials::{Branch, Law as Material, Maxwell, NeoHooke};
 use carom_mesh::generate;
 

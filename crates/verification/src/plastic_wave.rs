@@ -15,7 +15,7 @@
 //! that.
 
 use carom_bodies::{BodySpec, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, System};
+use carom_dynamics::{Driver, Model, ModelBody};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{Mesh, generate};
 

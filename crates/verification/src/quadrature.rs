@@ -14,7 +14,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law, Plane as Wall, Sliding};
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
 use carom_materials::Plane;
 use carom_mesh::generate;
 

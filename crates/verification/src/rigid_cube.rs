@@ -23,7 +23,7 @@ use carom_algebra::tensor::{Mat3, Vec3};
 use carom_bodies::{Inertia, Kinematics};
 use carom_contact::Law;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelBody, ModelRigid, ModelTarget, Scheme, State, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelRigid, ModelTarget, Scheme, State};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
 

@@ -12,7 +12,7 @@
 
 use carom_algebra::rotation::Rotation;
 use carom_bodies::{Inertia, Kinematics};
-use carom_dynamics::{Driver, Model, ModelRigid, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelRigid, ModelTarget};
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};

@@ -13,7 +13,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_bodies::{Inertia, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelRigid, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelRigid, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::generate;
 

@@ -17,10 +17,10 @@ use std::f64::consts::PI;
 
 use carom_bodies::Kinematics;
 use carom_contact::Plane;
-use carom_dynamics::{Driver, Model, ModelBody, ModelLink, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelLink, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones, mortar_rows};
+use carom_zones::{LinkKind, ModelZone, Zoned, mortar_rows};
 
 use crate::Error;
 use crate::build::{CENTRAL, NOW, contact, neo_hooke, newmark, surface, theta, welded};

@@ -21,7 +21,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::{Adhesion, Damped, Penalty};
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, Scheme, State, System};
+use carom_dynamics::{Driver, Model, Scheme, State};
 use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::Elastic;
 

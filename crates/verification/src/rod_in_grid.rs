@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, SectionShape};
 use carom_contact::law::{Capture, Displacement, Reading, Restitution, Velocity};
 use carom_contact::{Initial, Law, Plane};
-use carom_dynamics::{Driver, Model, ModelContact, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelContact, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 use carom_signals::Amplitude;

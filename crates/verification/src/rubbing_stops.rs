@@ -15,7 +15,7 @@
 //! A disc that rolls needs no friction: what central differences leave of it is the round-off of the speeds over what μ N changes in a
 //! step, 1e-16/(3 μ g dt), less than 1e-12; 1e-9 is left to the speeds of the carrying stop.
 
-use carom_dynamics::{Driver, Scheme, Support, System};
+use carom_dynamics::{Driver, Scheme, Support};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};

@@ -12,7 +12,7 @@
 use std::path::Path;
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::{Bar, Contact, Impact, Solution};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::Mesh;

@@ -9,7 +9,7 @@
 //! the table is a bound. Sizes: quick n = 100, full also 200 and 400.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::{Bar, Impact, constrained_modulus, solve};
 use carom_materials::Elastic;
 use carom_mesh::generate;

@@ -13,7 +13,7 @@
 use carom_bodies::Rotations;
 use carom_contact::Law;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, Surface};
 

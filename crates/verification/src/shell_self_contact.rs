@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::Rotations;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface};
 

@@ -22,7 +22,6 @@ use carom_bodies::{CellWeights, Kinematics, ShellSection};
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
     Costs, Driver, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Solver, Support,
-    System,
 };
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;

@@ -13,7 +13,7 @@
 
 use carom_algebra::tensor::Vec3;
 use carom_arlequin::Weighting;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
 

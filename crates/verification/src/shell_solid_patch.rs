@@ -22,7 +22,7 @@
 
 use carom_arlequin::{Profile, Row as Coupled, Term, Weighting};
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support, System,
+    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support,
 };
 use carom_materials::Elastic;
 use carom_mesh::Mesh;

@@ -1,7 +1,7 @@
 //! Meshes, bodies and static stages of shells.
 
 use carom_bodies::{Formulation, Kinematics, MassKind, Rotations, ShellSection};
-use carom_dynamics::{Driver, Model, ModelBody, NodalLoad, Preload, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, NodalLoad, Preload, Support};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh};

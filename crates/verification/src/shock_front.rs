@@ -14,7 +14,7 @@
 //! Sizes: quick, quadrilaterals in full integration; full, one-point hexahedra as well.
 
 use carom_bodies::{BodySpec, BulkViscosity, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, System};
+use carom_dynamics::{Driver, Model, ModelBody};
 use carom_materials::{Elastic, Law, NeoHooke, Plane};
 use carom_mesh::{Mesh, generate};
 

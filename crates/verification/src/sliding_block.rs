@@ -17,7 +17,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::{Law, Motion, Obstacle, Plane, Translation};
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, State, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, State, Support};
 use carom_elements::Kind;
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;

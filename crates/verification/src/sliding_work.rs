@@ -19,7 +19,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Restitution};
 use carom_contact::{Cylinder, Integration, Law, Side};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 

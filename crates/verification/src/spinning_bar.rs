@@ -12,7 +12,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Iteration, Model, ModelBody, Scheme, System};
+use carom_dynamics::{Driver, Iteration, Model, ModelBody, Scheme};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::generate;
 

@@ -11,7 +11,7 @@
 use std::f64::consts::PI;
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, System};
+use carom_dynamics::{Driver, Model};
 use carom_materials::Elastic;
 use carom_mesh::generate;
 

@@ -11,7 +11,7 @@
 //! tolerance of the iterations.
 
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, Rotations, SectionShape};
-use carom_dynamics::{Driver, Model, ModelBody, ModelConstraint, Order, Preload, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelConstraint, Order, Preload, Scheme};
 use carom_mesh::{Mesh, generate};
 
 use crate::Error;

@@ -6,7 +6,7 @@
 //! Tolerance: 1e-11 of the largest energy and of the largest momentum, round-off.
 
 use carom_contact::law::Level;
-use carom_dynamics::{Driver, Scheme, System, march};
+use carom_dynamics::{Driver, Scheme, march};
 
 use crate::Error;
 use crate::bars::{Run, SLOW};

@@ -11,7 +11,7 @@
 use std::f64::consts::TAU;
 
 use carom_bodies::Curve;
-use carom_dynamics::{Driver, System};
+use carom_dynamics::Driver;
 use carom_signals::{Record, Synthetic};
 
 use crate::Error;

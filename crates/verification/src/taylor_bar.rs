@@ -24,7 +24,7 @@
 use std::path::Path;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, Scheme, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, Scheme, Support};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{Mesh, generate, read};
 

@@ -12,7 +12,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 use carom_materials::Elastic;
 
 use crate::build::NOW;

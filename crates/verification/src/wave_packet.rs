@@ -6,7 +6,7 @@ use carom_arlequin::Row as Coupled;
 use carom_dynamics::{Model, ModelBody, ModelLink, Scheme, System};
 use carom_exact::beam::Beam;
 use carom_mesh::Mesh;
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::newmark;

@@ -3,7 +3,7 @@
 //! Nothing is kept unless somebody looks ([`look`]): the page of a verification. Checks build systems on several threads, so that what is
 //! seen is behind a lock; checks run one after the other while it is looked at.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use carom_dynamics::{Model, System};
 use carom_zones::{Zoned, Zones};
@@ -58,7 +58,7 @@ pub(crate) fn look<T>(act: impl FnOnce() -> T) -> (T, Shown) {
 ///
 /// # Errors
 /// Those of [`System::new`].
-pub(crate) fn system(model: Model) -> Result<System, carom_system::Error> {
+pub(crate) fn system(model: Model) -> Result<Arc<System>, carom_system::Error> {
     show(&model);
     System::new(model)
 }

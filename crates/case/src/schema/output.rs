@@ -239,6 +239,13 @@ pub enum Field {
     Acceleration,
     /// Stress of the cells, Pa; of beams and shells the mean over the section, of shells also that at both faces.
     Stress,
+    /// Strain of the cells of solids and bars, with `principal_strain`: at small strain that of the displacement, at finite strain the logarithmic one. Zero of
+    /// beams and shells, and across a plate under plane stress.
+    Strain,
+    /// Principal values of the stress of the cells, the largest first, Pa.
+    PrincipalStress,
+    /// Stress at the nodes, Pa: the mean of the cells around a node, weighted by their volumes, with `nodal_von_mises`.
+    NodalStress,
     /// Rotation of the nodes of beams, rad; zero elsewhere.
     Rotation,
     /// Forces (N) and moments (N m) in the sections of beams, in the axes of the section; zero elsewhere. `section_force`: normal

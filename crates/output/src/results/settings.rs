@@ -141,6 +141,12 @@ pub struct Fields {
     pub acceleration: bool,
     /// Mean stress of the cells and its von Mises equivalent, Pa.
     pub stress: bool,
+    /// Strain of the cells and its principal values.
+    pub strain: bool,
+    /// Principal values of the mean stress of the cells, Pa.
+    pub principal_stress: bool,
+    /// Stress at the nodes, the mean of the cells around them, and its von Mises equivalent, Pa.
+    pub nodal_stress: bool,
     /// Rotation of the nodes of beams, rad.
     pub rotation: bool,
     /// Forces (N) and moments (N m) in the sections of beams.
