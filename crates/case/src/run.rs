@@ -205,6 +205,7 @@ pub(crate) fn settings(
                     velocity: has(Motion::Velocity),
                     acceleration: has(Motion::Acceleration),
                     absolute_acceleration: has(Motion::AbsoluteAcceleration),
+                    contact: has(Motion::Contact),
                     spectrum: probe.spectrum.clone(),
                     filters: probe.filters.clone(),
                 }

@@ -26,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::exit::{BAD, BAD_INPUT, FAILED};
+use crate::exit::{BAD_INPUT, FAILED};
 use crate::terminal::{err, out};
 
 /// Computes the impact of deformable bodies: a case file, a run, a report

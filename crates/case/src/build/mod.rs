@@ -283,6 +283,7 @@ impl Builder<'_> {
         self.startable(&system);
         self.advise(&system);
         let levels = self.levels(&system);
+        self.probes_at_contacts(&probes, &system);
         let probes = self.weighed(probes, &system);
         let end = self.case.time.end.0;
         let reference = self.reference(&system, end);

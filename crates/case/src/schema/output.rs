@@ -143,6 +143,9 @@ pub enum Motion {
     /// Mean stress of the cell nearest to `at`, Pa, and its von Mises equivalent; at finite strain of Cauchy, of beams and shells the
     /// mean over the section. It takes about as long as the internal forces of the body.
     Stress,
+    /// What the contact points at the nodes do, of the secondary side of a contact: sum of their normal forces, N, that over the area that they stand for, Pa, and the least of
+    /// their gaps, m.
+    Contact,
 }
 
 /// Output of a run beside its histories, which are always written at every step.

@@ -93,6 +93,8 @@ pub struct Probe {
     pub acceleration: bool,
     /// Whether the acceleration with that of the frame of coordinates is written, m/s².
     pub absolute_acceleration: bool,
+    /// Whether force (N), pressure (Pa) and gap (m) of the contact points at the nodes are written.
+    pub contact: bool,
     /// Response spectrum of the absolute acceleration; `None` for none.
     pub spectrum: Option<Spectrum>,
     /// Classes (Hz) of the filters ([`ChannelFilter`](carom_signals::ChannelFilter)) behind which the accelerations are written too.

@@ -193,6 +193,7 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
         velocity: true,
         acceleration: true,
         absolute_acceleration: false,
+        contact: false,
         spectrum: None,
         filters: Vec::new(),
     }
