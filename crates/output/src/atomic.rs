@@ -37,22 +37,6 @@ pub(crate) fn write_after(
     replace(path, content, before).map_err(Error::file("write", path))
 }
 
-/// As [`write()`], by what needs the path of the file that it writes; `content` is given that of the temporary file, which is empty.
-#[cfg(feature = "hdf5")]
-pub(crate) fn write_at(
-    path: &Path,
-    content: impl FnOnce(&Path) -> Result<(), Error>,
-) -> Result<(), Error> {
-    let refused = || Error::file("write", path);
-    let file = temporary(folder_of(path)).map_err(refused())?;
-    content(file.path())?;
-    // another handle may have written it
-    let written = File::open(file.path()).and_then(|file| file.sync_all());
-    written.map_err(refused())?;
-    let kept = file.persist(path).map_err(|failed| failed.error);
-    kept.map(drop).map_err(refused())
-}
-
 /// Writes text as a whole file.
 ///
 /// # Errors
@@ -97,7 +81,11 @@ fn replace(
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     before: impl FnOnce() -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut buffer = BufWriter::new(temporary(folder_of(path))?);
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let mut buffer = BufWriter::new(temporary(folder)?);
     content(&mut buffer)?;
     let file = buffer
         .into_inner()
@@ -106,13 +94,6 @@ fn replace(
     before()?;
     file.persist(path)?;
     Ok(())
-}
-
-fn folder_of(path: &Path) -> &Path {
-    match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
 }
 
 /// A temporary file that will be as readable as an ordinary one (temporary files are private by default).

@@ -2,11 +2,8 @@
 //!
 //! An unstructured grid of version 2.0 with the group `Steps`: arrays of all instants one after the other, and where each begins. What
 //! does not change from one instant to the next stands there once. The file is made of the `.vtu` files of the instants, which stay
-//! beside it: it has the same numbers, and a run that is killed has lost nothing that the `.vtu` files do not have.
-//!
-//! Memory: a first pass over the files finds where each array begins with two instants at a time. The arrays are then added to the file
-//! in batches of at most [`BATCH`] bytes, or one by one where they are larger: hdf5-pure 0.47 appends to datasets of rank one, and vectors
-//! have rank two, so that an array must be whole when it is written. Its bytes, shuffled and compressed, are then some 2.7 times the array.
+//! beside it: it has the same numbers, and a run that is killed has lost nothing that the `.vtu` files do not have. All arrays are in
+//! memory while it is written: hdf5-pure 0.47 appends in place to datasets of rank one, and vectors have rank two.
 //!
 //! Source: VTKHDF file format, specification, UnstructuredGrid and temporal data (docs.vtk.org).
 
@@ -15,7 +12,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use carom_mesh::read::vtu::{Numbers, Stored, stored};
-use hdf5_pure::{AttrValue, DatasetBuilder, File, FileBuilder, GroupBuilder};
+use hdf5_pure::{AttrValue, FileBuilder, GroupBuilder};
 
 use crate::{Error, atomic};
 
@@ -25,25 +22,14 @@ const CHUNK: usize = 1 << 16;
 /// Level of compression.
 const DEFLATE: u32 = 4;
 
-/// Bytes of arrays that are gathered at a time, 64 MiB.
-const BATCH: usize = 1 << 26;
-
-/// Where an array stands.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Key {
-    Points,
-    Field { of_points: bool, name: String },
-}
-
 /// An array of all instants.
-struct Array {
+struct Grown {
     components: usize,
-    /// Values of an instant.
-    length: usize,
-    /// The instants that bring values of their own, ascending.
-    own: Vec<usize>,
-    /// Number of the first row of each instant.
+    values: Numbers,
+    /// Number of the first value of each instant.
     begins: Vec<i64>,
+    /// Where the last instant that brought new values has them.
+    last: std::ops::Range<usize>,
 }
 
 /// Writes one file of the instants, each with its time (s) and its `.vtu` file; whole or not at all.
@@ -51,78 +37,41 @@ struct Array {
 /// # Errors
 /// [`Error::File`]: a file cannot be read, has another number of cells than the first one, or the system refuses.
 pub(crate) fn write(path: &Path, instants: &[(f64, PathBuf)]) -> Result<(), Error> {
-    let Some((grid, arrays)) = survey(instants)? else {
-        return Ok(());
-    };
-    let times: Vec<f64> = instants.iter().map(|(time, _)| *time).collect();
-    let frame = frame(&grid, &arrays, &times);
-    drop(grid);
-    atomic::write_at(path, |place| {
-        let mut file = std::fs::File::create(place).map_err(Error::file("write", place))?;
-        frame.finish_to(&mut file).map_err(refused(place))?;
-        drop(file);
-        let mut batch: Vec<(&Key, &Array)> = Vec::new();
-        let mut bytes = 0;
-        for (key, array) in &arrays {
-            let own = array.bytes();
-            if bytes + own > BATCH && !batch.is_empty() {
-                add(place, instants, &std::mem::take(&mut batch))?;
-                bytes = 0;
-            }
-            batch.push((key, array));
-            bytes += own;
-        }
-        add(place, instants, &batch)
-    })
-}
-
-/// The grid of the first instant, and what arrays there are; nothing without instants.
-fn survey(instants: &[(f64, PathBuf)]) -> Result<Option<(Stored, BTreeMap<Key, Array>)>, Error> {
     let mut grid: Option<Stored> = None;
-    let mut arrays: BTreeMap<Key, (Array, Numbers)> = BTreeMap::new();
+    let mut points: Option<Grown> = None;
+    let mut fields: BTreeMap<(bool, String), Grown> = BTreeMap::new();
     for (number, (_, file)) in instants.iter().enumerate() {
-        let found = read(file)?;
+        let bytes = std::fs::read(file).map_err(Error::file("read", file))?;
+        let found = stored(file, &bytes).map_err(|cause| broken(file, cause))?;
         let first = grid.get_or_insert_with(|| found.clone());
         if (&first.connectivity, &first.types) != (&found.connectivity, &found.types) {
             return Err(broken(file, "other cells than those of the first instant"));
         }
-        for (key, components, values) in parts(found) {
-            match arrays.get_mut(&key) {
-                None => {
-                    arrays.insert(key, (Array::new(components, &values, number), values));
-                }
-                Some((array, last)) => {
-                    let taken = array.take(number, (last, values));
-                    taken.ok_or_else(|| broken(file, "an array of another size"))?;
-                }
-            }
+        let coordinates = Numbers::Reals(found.points.as_flattened().to_vec());
+        let grown = points.get_or_insert_with(|| Grown::new(3, &coordinates, number));
+        grown
+            .take(coordinates, number)
+            .ok_or_else(|| broken(file, "another number of points"))?;
+        for field in found.arrays {
+            let key = (field.of_points, field.name);
+            let (components, values) = (field.components, field.values);
+            let grown = fields
+                .entry(key)
+                .or_insert_with(|| Grown::new(components, &values, number));
+            let taken = grown.take(values, number);
+            taken.ok_or_else(|| broken(file, "a field of another size"))?;
         }
         // fields that never change stand in the first file alone
-        for (array, _) in arrays.values_mut() {
-            array.fill(number + 1);
+        for grown in fields.values_mut() {
+            grown.repeat(number);
         }
     }
-    let arrays = arrays.into_iter().map(|(key, (array, _))| (key, array));
-    Ok(grid.map(|grid| (grid, arrays.collect())))
-}
-
-fn read(file: &Path) -> Result<Stored, Error> {
-    let bytes = std::fs::read(file).map_err(Error::file("read", file))?;
-    stored(file, &bytes).map_err(|cause| broken(file, cause))
-}
-
-/// The arrays of an instant.
-fn parts(found: Stored) -> impl Iterator<Item = (Key, usize, Numbers)> {
-    let points = Numbers::Reals(found.points.into_flattened());
-    let fields = found.arrays.into_iter().map(|field| {
-        let (of_points, name) = (field.of_points, field.name);
-        (
-            Key::Field { of_points, name },
-            field.components.max(1),
-            field.values,
-        )
-    });
-    std::iter::once((Key::Points, 3, points)).chain(fields)
+    let (Some(grid), Some(points)) = (grid, points) else {
+        return Ok(());
+    };
+    let times: Vec<f64> = instants.iter().map(|(time, _)| *time).collect();
+    let file = document(&grid, &points, &fields, &times);
+    atomic::write(path, |to| file.finish_to(to).map_err(io::Error::other))
 }
 
 fn broken(path: &Path, cause: impl ToString) -> Error {
@@ -132,60 +81,65 @@ fn broken(path: &Path, cause: impl ToString) -> Error {
     ))
 }
 
-fn refused(path: &Path) -> impl Fn(hdf5_pure::Error) -> Error {
-    move |cause| Error::file("write", path)(io::Error::other(cause))
-}
-
-impl Array {
-    /// With the values of the instant of this number, the first that has any.
-    fn new(components: usize, values: &Numbers, number: usize) -> Array {
-        Array {
-            components,
-            length: values.len(),
-            own: vec![number],
-            begins: vec![0; number + 1],
+impl Grown {
+    /// Before the first values, which are those of the instant of this number.
+    fn new(components: usize, like: &Numbers, number: usize) -> Grown {
+        Grown {
+            components: components.max(1),
+            values: match like {
+                Numbers::Integers(_) => Numbers::Integers(Vec::new()),
+                Numbers::Reals(_) => Numbers::Reals(Vec::new()),
+            },
+            begins: vec![0; number],
+            last: 0..0,
         }
     }
 
-    /// Takes the values of an instant, or tells that they are those of the one before; `None` where they are of another sort.
-    fn take(&mut self, number: usize, (last, new): (&mut Numbers, Numbers)) -> Option<()> {
-        if new.len() != self.length {
+    /// Adds the values of an instant, or tells that they are those of the one before; `None` where they are of another sort.
+    fn take(&mut self, new: Numbers, number: usize) -> Option<()> {
+        let known = !self.last.is_empty();
+        let begin = self.values.len();
+        match (&mut self.values, new) {
+            (Numbers::Integers(all), Numbers::Integers(new)) => {
+                if !known || all[self.last.clone()] != new {
+                    all.extend(new);
+                }
+            }
+            (Numbers::Reals(all), Numbers::Reals(new)) => {
+                let bits =
+                    |values: &[f64]| -> Vec<u64> { values.iter().map(|v| v.to_bits()).collect() };
+                if !known || bits(&all[self.last.clone()]) != bits(&new) {
+                    all.extend(new);
+                }
+            }
+            _ => return None,
+        }
+        let end = self.values.len();
+        if known && end > begin && end - begin != self.last.len() {
             return None;
         }
-        let same = match (&*last, &new) {
-            (Numbers::Integers(last), Numbers::Integers(new)) => last == new,
-            (Numbers::Reals(last), Numbers::Reals(new)) => last
-                .iter()
-                .zip(new)
-                .all(|(a, b)| a.to_bits() == b.to_bits()),
-            _ => return None,
-        };
-        if !same {
-            self.begins.push(self.rows());
-            self.own.push(number);
-            *last = new;
+        if end > begin {
+            self.last = begin..end;
         }
-        self.fill(number + 1);
+        self.repeat(number);
         Some(())
     }
 
-    /// Lets instants without values of their own have the last ones.
-    fn fill(&mut self, count: usize) {
-        let last = self.begins.last().copied().unwrap_or(0);
-        self.begins.resize(count.max(self.begins.len()), last);
+    /// Tells that the instant of this number has the last values, unless it has its own.
+    fn repeat(&mut self, number: usize) {
+        if self.begins.len() == number {
+            self.begins.push((self.last.start / self.components) as i64);
+        }
     }
 
-    /// Rows so far.
-    fn rows(&self) -> i64 {
-        (self.own.len() * self.length / self.components) as i64
-    }
-
-    fn bytes(&self) -> usize {
-        8 * self.own.len() * self.length
-    }
-
-    fn shape(&self, data: &mut DatasetBuilder) {
-        let (rows, components) = (self.rows() as u64, self.components as u64);
+    fn put(&self, group: &mut GroupBuilder, name: &str) {
+        let data = group.create_dataset(name);
+        match &self.values {
+            Numbers::Reals(values) => data.with_f64_data(values),
+            Numbers::Integers(values) => data.with_i64_data(values),
+        };
+        let rows = (self.values.len() / self.components) as u64;
+        let components = self.components as u64;
         let chunk = ((CHUNK / self.components) as u64).clamp(1, rows.max(1));
         let (shape, chunks) = match components {
             1 => (vec![rows], vec![chunk]),
@@ -200,74 +154,12 @@ impl Array {
     }
 }
 
-/// Adds arrays to a file, with their values of all instants.
-fn add(place: &Path, instants: &[(f64, PathBuf)], batch: &[(&Key, &Array)]) -> Result<(), Error> {
-    let mut gathered: BTreeMap<&Key, (&Array, Option<Numbers>)> = batch
-        .iter()
-        .map(|(key, array)| (*key, (*array, None)))
-        .collect();
-    for (number, (_, file)) in instants.iter().enumerate() {
-        let wanted =
-            |(array, _): &(&Array, Option<Numbers>)| array.own.binary_search(&number).is_ok();
-        if !gathered.values().any(wanted) {
-            continue;
-        }
-        for (key, _, values) in parts(read(file)?) {
-            if let Some(entry) = gathered.get_mut(&key).filter(|entry| wanted(entry)) {
-                append(&mut entry.1, (entry.0, values));
-            }
-        }
-    }
-    let refused = refused(place);
-    let file = File::open_rw(place).map_err(&refused)?;
-    let root = file.group("VTKHDF").map_err(&refused)?;
-    for (key, (array, values)) in gathered {
-        let name = match key {
-            Key::Points => "Points".to_owned(),
-            Key::Field {
-                of_points: true,
-                name,
-            } => format!("PointData/{name}"),
-            Key::Field {
-                of_points: false,
-                name,
-            } => format!("CellData/{name}"),
-        };
-        let put = |data: &mut DatasetBuilder| {
-            match &values {
-                Some(Numbers::Integers(values)) => data.with_i64_data(values),
-                Some(Numbers::Reals(values)) => data.with_f64_data(values),
-                None => data.with_f64_data(&[]),
-            };
-            array.shape(data);
-        };
-        root.create_dataset(&name, put).map_err(&refused)?;
-    }
-    file.commit().map_err(&refused)
-}
-
-fn append(all: &mut Option<Numbers>, (array, new): (&Array, Numbers)) {
-    match (all, new) {
-        (Some(Numbers::Integers(all)), Numbers::Integers(new)) => all.extend(new),
-        (Some(Numbers::Reals(all)), Numbers::Reals(new)) => all.extend(new),
-        (all, new) => {
-            let room = array.own.len() * array.length;
-            *all = Some(match new {
-                Numbers::Integers(mut new) => {
-                    new.reserve_exact(room - new.len());
-                    Numbers::Integers(new)
-                }
-                Numbers::Reals(mut new) => {
-                    new.reserve_exact(room - new.len());
-                    Numbers::Reals(new)
-                }
-            });
-        }
-    }
-}
-
-/// All of the file but the arrays.
-fn frame(grid: &Stored, arrays: &BTreeMap<Key, Array>, times: &[f64]) -> FileBuilder {
+fn document(
+    grid: &Stored,
+    points: &Grown,
+    fields: &BTreeMap<(bool, String), Grown>,
+    times: &[f64],
+) -> FileBuilder {
     let mut file = FileBuilder::new();
     let mut root = file.create_group("VTKHDF");
     root.set_attr("Version", AttrValue::I64Array(vec![2, 0]));
@@ -290,34 +182,30 @@ fn frame(grid: &Stored, arrays: &BTreeMap<Key, Array>, times: &[f64]) -> FileBui
     integers(&mut root, "Connectivity", &grid.connectivity);
     let types: Vec<u8> = grid.types.iter().map(|kind| *kind as u8).collect();
     root.create_dataset("Types").with_u8_data(&types);
+    points.put(&mut root, "Points");
     let mut steps = root.create_group("Steps");
     steps.set_attr("NSteps", AttrValue::I64(times.len() as i64));
     steps.create_dataset("Values").with_f64_data(times);
     let zeros = vec![0; times.len()];
     integers(&mut steps, "PartOffsets", &zeros);
     integers(&mut steps, "NumberOfParts", &vec![1; times.len()]);
+    integers(&mut steps, "PointOffsets", &points.begins);
     for name in ["CellOffsets", "ConnectivityIdOffsets"] {
         let data = steps.create_dataset(name);
         data.with_i64_data(&zeros)
             .with_shape(&[times.len() as u64, 1]);
     }
-    for (wanted, data, offsets) in [
+    for (of_points, data, offsets) in [
         (true, "PointData", "PointDataOffsets"),
         (false, "CellData", "CellDataOffsets"),
     ] {
-        let (own, mut begins) = (root.create_group(data), steps.create_group(offsets));
-        for (key, array) in arrays {
-            if let Key::Field { of_points, name } = key
-                && *of_points == wanted
-            {
-                integers(&mut begins, name, &array.begins);
-            }
+        let (mut own, mut begins) = (root.create_group(data), steps.create_group(offsets));
+        for ((_, name), grown) in fields.iter().filter(|((at, _), _)| *at == of_points) {
+            grown.put(&mut own, name);
+            integers(&mut begins, name, &grown.begins);
         }
         root.add_group(own.finish());
         steps.add_group(begins.finish());
-    }
-    if let Some(points) = arrays.get(&Key::Points) {
-        integers(&mut steps, "PointOffsets", &points.begins);
     }
     root.add_group(steps.finish());
     file.add_group(root.finish());
