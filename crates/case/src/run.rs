@@ -205,6 +205,7 @@ pub(crate) fn settings(
                     velocity: has(Motion::Velocity),
                     acceleration: has(Motion::Acceleration),
                     absolute_acceleration: has(Motion::AbsoluteAcceleration),
+                    contact: has(Motion::Contact),
                     spectrum: probe.spectrum.clone(),
                     filters: probe.filters.clone(),
                 }
@@ -230,6 +231,9 @@ pub(crate) fn settings(
                 velocity: has(Field::Velocity),
                 acceleration: has(Field::Acceleration),
                 stress: has(Field::Stress),
+                strain: has(Field::Strain),
+                principal_stress: has(Field::PrincipalStress),
+                nodal_stress: has(Field::NodalStress),
                 rotation: has(Field::Rotation),
                 section_forces: has(Field::SectionForces),
                 vtkhdf: fields.vtkhdf,

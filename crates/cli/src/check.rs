@@ -107,7 +107,7 @@ fn told(estimate: &Estimate) -> Fact {
 
 fn draw(built: &Built, path: &Path) -> Result<(), u8> {
     let Some(picture) = carom_output::model_picture(&built.system) else {
-        err!("error: a model of one dimension, or of points and springs alone, has no picture");
+        err!("error: a model of points and springs alone has no picture");
         return Err(BAD_INPUT);
     };
     let written = picture.and_then(|svg| atomic::write_text(path, &svg));

@@ -17,6 +17,7 @@ mod run;
 mod study;
 mod sweep;
 mod terminal;
+mod verify;
 
 use std::io::IsTerminal;
 use std::num::NonZeroUsize;
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
-use crate::exit::{BAD, BAD_INPUT, FAILED};
+use crate::exit::{BAD_INPUT, FAILED};
 use crate::terminal::{err, out};
 
 /// Computes the impact of deformable bodies: a case file, a run, a report
@@ -154,7 +155,7 @@ fn obey(arguments: Arguments) -> u8 {
             name,
             quick,
             report,
-        } => verify(name.as_deref(), quick, report.as_deref()),
+        } => verify::verify(name.as_deref(), quick, report.as_deref()),
         Command::Completion { shell } => {
             let command = &mut Arguments::command();
             clap_complete::generate(shell, command, "carom", &mut terminal::StandardOutput);
@@ -215,33 +216,4 @@ fn schema(reference: bool) -> u8 {
             FAILED
         }
     }
-}
-
-fn verify(name: Option<&str>, quick: bool, report: Option<&Path>) -> u8 {
-    let size = if quick {
-        carom_verification::Size::Quick
-    } else {
-        carom_verification::Size::Full
-    };
-    let found = carom_verification::verify(name, size, &mut terminal::StandardOutput);
-    let (verdict, made) = match found {
-        Ok(found) => found,
-        Err(error) => {
-            err!("error: {error}");
-            return FAILED;
-        }
-    };
-    if verdict.checks == 0 {
-        err!("error: no check of this name");
-        return BAD_INPUT;
-    }
-    if let Some(path) = report {
-        let page = carom_verification::page(&made, &verdict);
-        if let Err(error) = carom_output::atomic::write_text(path, &page) {
-            err!("error: {error}");
-            return FAILED;
-        }
-        out!("report: {}", path.display());
-    }
-    if verdict.holds() { 0 } else { BAD }
 }

@@ -33,4 +33,4 @@ pub use places::{Balance, Frames, Places};
 pub use point::Point;
 pub use rows::Rows;
 pub use search::{Held, Search};
-pub use sight::Sight;
+pub use sight::{Parts, Sight};

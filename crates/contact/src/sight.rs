@@ -20,12 +20,14 @@ use carom_mesh::{Bounds, BoxTree, Face, Projection};
 use rayon::prelude::*;
 
 use self::lists::{Incidence, Lists};
+pub use self::parts::Parts;
 pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
 
 mod along;
 mod lists;
+mod parts;
 mod sides;
 mod turned;
 
@@ -59,6 +61,8 @@ pub struct Sight {
     sides: Option<Sides>,
     /// Whether the surface lies around axes or middles, without a far side.
     round: bool,
+    /// Parts that do not touch each other, if there are any.
+    parts: Option<Parts>,
 }
 
 /// What one point sees.
@@ -131,12 +135,19 @@ impl Sight {
             reach: if itself { 4.0 * largest } else { f64::INFINITY },
             sides: None,
             round,
+            parts: None,
         };
         if itself && !round {
             sight.limit_to_thickness(points, target, x);
             sight.take_sides(points, x);
         }
         sight
+    }
+
+    /// The views without faces of parts that do not touch. `parts`: of the faces that the views were made with.
+    pub fn with_parts(self, parts: &Parts) -> Sight {
+        let parts = (!parts.apart.is_empty()).then(|| parts.clone());
+        Sight { parts, ..self }
     }
 
     /// Whether the surface faces itself: points on its both sides may then say the same.
@@ -297,10 +308,13 @@ impl View<'_> {
         }
     }
 
-    /// Whether a face is beside the viewer, and so never in view.
+    /// Whether a face is beside the viewer, or of a part that it does not touch, and so never in view.
     pub(crate) fn is_beside(&self, item: u32) -> bool {
         let beside = self.sight.beside.of(self.point);
+        let around = self.sight.around.of(self.point);
+        let parts = self.sight.parts.as_ref();
         beside.binary_search(&item).is_ok()
+            || parts.is_some_and(|parts| parts.keep_apart(around, item))
     }
 
     /// Whether a face is out of view wherever the foot on it is: beside the viewer at `x` (m), with the viewer too deep behind it, or with normals

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::operator::Operators;
 
+/// No run takes as long: a thousand years.
+pub const LONGEST: Duration = Duration::from_secs(1000 * 365 * 24 * 3600);
+
 /// Wall time spent so far by phase of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Phases {
@@ -74,6 +77,20 @@ pub struct Costs {
 }
 
 impl Costs {
+    /// Whether all times are below [`LONGEST`], as those of a run are: others would not add up.
+    pub fn are_times(&self) -> bool {
+        let phases = &self.phases;
+        let times = [
+            phases.factorisation,
+            phases.forces,
+            phases.sweeps,
+            phases.contact,
+            phases.friction,
+            phases.balance,
+        ];
+        times.iter().all(|time| *time < LONGEST) && self.zones.iter().all(Costs::are_times)
+    }
+
     /// Adds the costs of another driver, or those before a run was gone on with.
     pub fn add(&mut self, other: &Costs) {
         self.factors.extend_from_slice(&other.factors);

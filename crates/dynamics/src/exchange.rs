@@ -37,6 +37,9 @@ struct Part {
     /// Impulse of the contacts until now, while it is gathered.
     #[serde(skip)]
     given: [f64; 3],
+    /// Whether a contact that has several bodies on a side acts on it, of which the record tells the sum alone.
+    #[serde(skip)]
+    untold: bool,
 }
 
 /// Sum of the forces on the unknowns of a part; of an axisymmetric one only the axial sum is a force.
@@ -83,6 +86,12 @@ impl Exchange {
             parts,
             largest_residual: 0.0,
         }
+    }
+
+    /// Whether it is of this system at a step: it begins with the dynamics.
+    pub(crate) fn is_of(&self, system: &System, step: u64) -> bool {
+        let begins = step <= system.static_steps();
+        self.parts.len() == system.parts.len() || begins && self.parts.is_empty()
     }
 
     /// Makes this the exchange of the state before the step.
@@ -147,11 +156,18 @@ impl Exchange {
         momenta: impl Fn(usize) -> [f64; 3],
         records: &[ContactRecord],
     ) {
-        for (record, (secondary, primary)) in records.iter().zip(&system.sides) {
+        for (number, record) in records.iter().enumerate() {
+            let (secondary, primary) = system.sides[number];
+            if system.is_of_many(number) {
+                for &body in &system.touching[number] {
+                    self.parts[system.part_of_body[body]].untold = true;
+                }
+                continue;
+            }
             let impulse = axial(system, record.exchanged());
             self.largest_momentum = self.largest_momentum.max(largest(&impulse));
             let of = |body: usize| system.part_of_body[body];
-            let (one, other) = (of(*secondary), primary.map(of));
+            let (one, other) = (of(secondary), primary.map(of));
             if Some(one) == other {
                 continue;
             }
@@ -166,7 +182,9 @@ impl Exchange {
             let now = axial(system, momenta(number));
             let given = std::mem::take(&mut part.given);
             let left = [0, 1, 2].map(|i| now[i] - part.start[i] - part.own[i].get() - given[i]);
-            self.largest_residual = self.largest_residual.max(largest(&left));
+            if !part.untold {
+                self.largest_residual = self.largest_residual.max(largest(&left));
+            }
             self.largest_momentum = self.largest_momentum.max(largest(&now));
         }
     }

@@ -33,6 +33,8 @@ pub enum NoRestitution {
     TurnedForce,
     /// The obstacle moves.
     MovingObstacle,
+    /// A side has several bodies.
+    ManyBodies,
 }
 
 /// One impact: from the first closing of a contact to the last release before a flight that lasts.
@@ -231,6 +233,7 @@ impl OpenImpact {
         let approach = along.before[1] - along.before[0];
         let inverse: f64 = along.masses.iter().map(|m| 1.0 / m).sum();
         let restitution = match norm(normal) >= STEADY * self.pushed.get() {
+            _ if system.is_of_many(contact) => Err(NoRestitution::ManyBodies),
             _ if system.contacts[contact].moves() => Err(NoRestitution::MovingObstacle),
             false => Err(NoRestitution::TurnedForce),
             true => along.restitution(),
@@ -322,7 +325,11 @@ struct Sides<'a> {
 impl Sides<'_> {
     fn of(system: &System, contact: usize) -> Sides<'_> {
         let (secondary, primary) = system.sides[contact];
-        let bodies = [Some(secondary), primary];
+        // of several bodies on a side no mass and no motion stands for all
+        let bodies = match system.is_of_many(contact) {
+            true => [None; 2],
+            false => [Some(secondary), primary],
+        };
         let mut free = [[0.0; 3]; 2];
         for (body, free) in bodies.iter().zip(&mut free) {
             let reduced = body.filter(|&body| system.bodies[body].as_reduced().is_some());
@@ -436,9 +443,8 @@ fn lasting(system: &System, contact: usize, (given, start): (&Given, f64)) -> f6
 
 /// Time that a wave takes across the longer of the two bodies of a contact (the diagonal of its box), s.
 fn crossing(system: &System, contact: usize) -> f64 {
-    let (secondary, primary) = system.sides[contact];
-    let bodies = [Some(secondary), primary].into_iter().flatten();
-    let across = bodies.filter_map(|body| {
+    let bodies = system.touching[contact].iter();
+    let across = bodies.filter_map(|&body| {
         let waves = system.bodies[body].wave_speed()?;
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
         for &(node, _) in &system.body_masses[body] {

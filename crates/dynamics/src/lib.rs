@@ -42,7 +42,7 @@ use carom_system as system;
 
 pub use carom_signals::{Amplitude, Held};
 pub use control::{Attempts, Control, Event, adapt};
-pub use costs::{Costs, Phases, Work};
+pub use costs::{Costs, LONGEST, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
 pub use driver::Driver;
 pub use driver::linked;

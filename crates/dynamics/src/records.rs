@@ -181,9 +181,8 @@ impl ContactRecord {
 
 /// Time that a wave needs to pass over the smallest element, of the slower side of a contact, s.
 fn passage(system: &System, contact: usize) -> f64 {
-    let (secondary, primary) = system.sides[contact];
-    let sides = [Some(secondary), primary].into_iter().flatten();
-    let bodies = sides.map(|body| &system.bodies[body]);
+    let bodies = system.touching[contact].iter();
+    let bodies = bodies.map(|&body| &system.bodies[body]);
     bodies.map(Body::passage).fold(0.0, f64::max)
 }
 
@@ -218,6 +217,21 @@ impl Records {
             opened: vec![f64::NEG_INFINITY; system.points()],
             loose: Vec::new(),
         }
+    }
+
+    /// Whether they are of this system.
+    pub fn are_of(&self, system: &System) -> bool {
+        let (contacts, points) = (system.contacts.len(), system.points());
+        let small = &self.small;
+        self.contacts.len() == contacts
+            && self.opened.len() == points
+            && [0, points].contains(&self.loose.len())
+            && small.bodies.len() == system.bodies.len()
+            && small.contacts.len() == contacts
+            && self
+                .impacts
+                .iter()
+                .all(|impact| (impact.contact as usize) < contacts)
     }
 
     /// Starts the clocks of the contacts at the end of a static stage: what is compressed there closes with the first step of the

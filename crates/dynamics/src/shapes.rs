@@ -3,6 +3,8 @@
 use carom_bodies::Looks;
 use serde::{Deserialize, Serialize};
 
+use crate::system::System;
+
 /// The shapes of the last looks at the elements of an explicit run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Shapes {
@@ -14,6 +16,14 @@ pub struct Shapes {
     pub(crate) by_compression: f64,
     /// Bound of the change of any length in an element since its frequency was found, relative.
     pub(crate) changed: f64,
+}
+
+impl Shapes {
+    /// Whether they are of this system, or of none before the first look.
+    pub(crate) fn are_of(&self, system: &System) -> bool {
+        let fits = |count: usize| [0, system.bodies.len()].contains(&count);
+        fits(self.looks.len()) && fits(self.bodies.len())
+    }
 }
 
 /// What bounds the change of the lengths in the elements of a body.

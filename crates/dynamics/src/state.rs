@@ -54,6 +54,16 @@ pub struct Links {
 }
 
 impl Links {
+    /// Whether they are of this system; none where it has none.
+    fn are_of(&self, system: &System) -> bool {
+        let (rows, schemes) = (system.link_rows.len(), system.schemes.len());
+        let is_none = rows == 0 && self.mixed.is_empty();
+        self.multipliers.len() == rows
+            && (is_none || self.mixed.len() == schemes)
+            && self.mixed.iter().all(|mixed| mixed.len() == rows)
+            && (self.works.len() == system.links.len() || rows == 0 && self.works.is_empty())
+    }
+
     /// Without forces and works.
     pub(crate) fn at_rest(system: &System) -> Links {
         let rows = system.link_rows.len();
@@ -93,6 +103,23 @@ pub struct InterfaceState {
 }
 
 impl InterfaceState {
+    /// Whether it is of so many contact points.
+    pub fn is_of(&self, points: usize) -> bool {
+        let arrays = [
+            &self.force,
+            &self.carried,
+            &self.gap,
+            &self.rate,
+            &self.opening,
+            &self.flight,
+            &self.crush,
+        ];
+        arrays.iter().all(|array| array.len() == points)
+            && self.status.len() == points
+            && self.watched.len() == points
+            && [0, points].contains(&self.friction.len())
+    }
+
     /// Becomes a copy, without new memory.
     pub(crate) fn follow(&mut self, before: &InterfaceState) {
         self.force.clone_from(&before.force);
@@ -173,10 +200,38 @@ impl State {
         Ok(state)
     }
 
-    /// Refuses a state of another size than the system's.
+    /// Refuses a state of another size than the system's, in any of its arrays, or of a time that is none.
     pub fn check(&self, system: &System) -> Result<(), Error> {
-        let (n, points) = (system.unknowns(), system.points());
-        let motion = &self.motion;
+        let n = system.unknowns();
+        let interface = self.interface.is_of(system.points());
+        let fits = self.has_motion_of(system)
+            && interface
+            && self
+                .forces
+                .iter()
+                .all(|force| [0, n].contains(&force.len()))
+            && self.links.are_of(system)
+            && self.records.are_of(system)
+            && self.exchange.is_of(system, self.step)
+            && self.shapes.are_of(system);
+        let cause = match (fits, self.time >= 0.0 && self.time.is_finite()) {
+            (true, true) => return Ok(()),
+            (true, false) => format!("its time is {} s", self.time),
+            (false, _) => format!(
+                "it belongs to another model than this one of {n} unknowns and {} contact points",
+                system.points()
+            ),
+        };
+        Err(Error::State { cause })
+    }
+
+    fn has_motion_of(&self, system: &System) -> bool {
+        let (n, motion) = (system.unknowns(), &self.motion);
+        let remembers = |scheme: &Scheme| scheme.get().step_map(system.dt).has_memory();
+        let remembered = match system.schemes.iter().any(remembers) {
+            true => n,
+            false => 0,
+        };
         let vectors = [
             &motion.u,
             &motion.v,
@@ -184,22 +239,11 @@ impl State {
             &motion.internal_force,
             &motion.contact_force,
         ];
-        let remembers = |scheme: &Scheme| scheme.get().step_map(system.dt).has_memory();
-        let remembered = match system.schemes.iter().any(remembers) {
-            true => n,
-            false => 0,
-        };
-        if vectors.iter().any(|vector| vector.len() != n)
-            || motion.frames.len() != system.initial_frames.len()
-            || motion.memory.len() != remembered
-            || self.interface.force.len() != points
-        {
-            let cause = format!(
-                "it belongs to another model than this one of {n} unknowns and {points} contact points"
-            );
-            return Err(Error::State { cause });
-        }
-        Ok(())
+        vectors.iter().all(|vector| vector.len() == n)
+            && [0, n].contains(&motion.link_force.len())
+            && motion.frames.len() == system.initial_frames.len()
+            && motion.memory.len() == remembered
+            && motion.history.len() == system.start_histories().len()
     }
 
     /// All impacts so far, those whose contact is closed now included.

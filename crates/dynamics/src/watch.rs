@@ -94,7 +94,15 @@ impl Watched {
             })
         };
         // ends of bars have no length
-        let element = system.bodies[system.sides[number].0].smallest_size();
+        let element = match system.is_of_many(number) {
+            true => {
+                let sizes = system.touching[number].iter();
+                sizes.fold(f64::INFINITY, |least, &body| {
+                    least.min(system.bodies[body].smallest_size())
+                })
+            }
+            false => system.bodies[system.sides[number].0].smallest_size(),
+        };
         watched.lengths = (0..contact.points.len())
             .map(|point| {
                 let (unknowns, _) = watched.initial.row(point);

@@ -141,11 +141,13 @@ impl Surface {
         let faces: Vec<Face> = all
             .filter(|face| cells_of[&key(&face.nodes)] == 1)
             .collect();
-        let mut nodes: Vec<u32> = faces
-            .iter()
-            .flat_map(|face| face.corners())
-            .copied()
-            .collect();
+        Surface::of_faces(faces)
+    }
+
+    /// The surface of these faces.
+    pub fn of_faces(faces: Vec<Face>) -> Surface {
+        let corners = faces.iter().flat_map(|face| face.corners());
+        let mut nodes: Vec<u32> = corners.copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
         Surface { faces, nodes }

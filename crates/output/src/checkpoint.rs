@@ -1,6 +1,6 @@
 //! Checkpoints: all that a run goes on from, in a ring of files.
 //!
-//! A checkpoint is one file: a line `carom-checkpoint 8 <checksum>`, a line of JSON ([`Head`]), then the parts that the head
+//! A checkpoint is one file: a line `carom-checkpoint 9 <checksum>`, a line of JSON ([`Head`]), then the parts that the head
 //! counts: the text that tells which case it is of, the state of the run, what it has cost, and what the results have gathered.
 //! The checksum is that of everything after the first line. The newest one is `last.state`, those before it `earlier-1.state`,
 //! `earlier-2.state`, .... A new one is forced to the disk before the others move by one place, and appears by a rename.
@@ -17,7 +17,7 @@ use crate::{Error, atomic};
 pub const FOLDER: &str = "checkpoints";
 
 /// First word and version of the format. Raise the version when the content of a state or of what results gather changes.
-const FORMAT: &str = "carom-checkpoint 8";
+const FORMAT: &str = "carom-checkpoint 9";
 
 /// Version of the program: another one may compute other bits.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
@@ -56,7 +56,11 @@ impl Checkpoint {
     /// # Errors
     /// [`Error::Checkpoint`], of a file whose checksum is right and content wrong.
     pub fn costs(&self) -> Result<carom_dynamics::Costs, Error> {
-        decode(&self.costs)
+        let costs: carom_dynamics::Costs = decode(&self.costs)?;
+        match costs.are_times() {
+            true => Ok(costs),
+            false => Err(refused(Path::new(FOLDER), "it has times that no run takes")),
+        }
     }
 
     /// What the results have gathered.
@@ -202,6 +206,14 @@ pub fn read(path: &Path) -> Result<Checkpoint, Error> {
         gathered: part()?,
         head: head.clone(),
     })
+}
+
+/// A checkpoint whose content is not of the run in whose folder it is.
+pub(crate) fn of_another_run(folder: &Path) -> Error {
+    refused(
+        &folder.join(FOLDER),
+        "what the results had gathered belongs to another run",
+    )
 }
 
 /// The first line without its end, and what follows it.

@@ -22,6 +22,10 @@ pub struct Maxima {
     pub instants: usize,
     /// Von Mises stress, mean of a cell, Pa; of a shell the largest of middle and faces. `None` where nothing is stressed.
     pub von_mises: Option<Maximum>,
+    /// Principal strain of a cell of the largest magnitude, of solids and bars: at small strain that of the displacement, at
+    /// finite strain the logarithmic one; `None` where nothing is strained.
+    #[serde(default)]
+    pub strain: Option<Maximum>,
     /// Equivalent plastic strain, mean of a cell; `None` where nothing yields.
     pub plastic_strain: Option<Maximum>,
     /// Magnitude of the displacement of a node, m.

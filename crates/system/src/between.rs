@@ -60,8 +60,8 @@ impl System {
         }
         // one matrix answers for contacts and links where multipliers act on all zones in contact alike
         let mut ratio: Option<f64> = None;
-        for (contact, (secondary, primary)) in self.contacts.iter().zip(&self.sides) {
-            for body in [Some(*secondary), *primary].into_iter().flatten() {
+        for (contact, bodies) in self.contacts.iter().zip(&self.touching) {
+            for &body in bodies {
                 if !linked[self.part_of_body[body]] {
                     continue;
                 }

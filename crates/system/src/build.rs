@@ -10,7 +10,7 @@ use carom_contact::{Contact, Frames, Places};
 use carom_mesh::Parts;
 use carom_schemes::Scheme;
 
-use crate::contacts::{numbered, renumbered, sides};
+use crate::contacts::{numbered, renumbered, sides, touching};
 use crate::error::Error;
 use crate::initial::settle;
 use crate::levers::Levers;
@@ -178,6 +178,7 @@ impl System {
             .iter()
             .map(|contact| sides(contact, &model))
             .collect();
+        let touching = touching(&model);
         let faces_of = |contact: &ModelContact| {
             let faces = contact.secondary.faces.iter();
             faces.map(|face| renumbered(face, &number)).collect()
@@ -257,6 +258,7 @@ impl System {
             contacts,
             secondary_faces,
             sides,
+            touching,
             first_point,
             scheme: schemes[0],
             schemes,

@@ -100,11 +100,11 @@ impl System {
             let body = body.spec.name.clone();
             return Err(carom_bodies::Error::NoBetween { body }.into());
         }
-        let touches = |(secondary, primary): &(usize, Option<usize>)| {
-            of_zone(*secondary) || primary.is_some_and(of_zone)
-        };
-        let contacts = self.contacts.iter().zip(&self.sides);
-        let mut contacts = contacts.filter(|(_, sides)| touches(sides)).map(|(c, _)| c);
+        let contacts = self.contacts.iter().zip(&self.touching);
+        let touches = |bodies: &[usize]| bodies.iter().any(|&body| of_zone(body));
+        let mut contacts = contacts
+            .filter(|(_, bodies)| touches(bodies))
+            .map(|(c, _)| c);
         let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
         if let Some(contact) = contacts.clone().find(refused) {
             let of_rates = scheme.takes(Level::Rate) && !scheme.is_explicit();

@@ -1,5 +1,7 @@
 //! Contacts in the numbers of a system: bodies of each side, points, and which law may hold where.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
@@ -12,6 +14,13 @@ use crate::system::System;
 const WHICH_LAWS: &str = "at Gauss points hold, in their weak form, the displacement law without projection and the velocity law, and, in each point by itself, the compliance, and penalty and stop without damping; the other laws hold at nodes";
 
 impl System {
+    /// Whether a side of a contact has several bodies: what two bodies do to each other is then not told apart.
+    pub fn is_of_many(&self, contact: usize) -> bool {
+        let (secondary, primary) = self.sides[contact];
+        let mut bodies = self.touching[contact].iter();
+        bodies.any(|&body| body != secondary && Some(body) != primary)
+    }
+
     /// Tangents of a contact point in problems with friction: none where no contact has any.
     pub fn tangents(&self) -> usize {
         match self.friction.iter().any(|mu| *mu > 0.0) {
@@ -25,10 +34,8 @@ impl System {
     /// contact: its force belongs to the instant of the internal forces, and with the normal of another instant a mass in orbit in a
     /// bore would gain or lose angular momentum in each step, in proportion to the step.
     pub fn pairs_anew(&self, contact: usize) -> bool {
-        let (secondary, primary) = self.sides[contact];
-        let sides = [Some(secondary), primary];
-        let mut sides = sides.into_iter().flatten();
-        let finite = sides.any(|body| self.bodies[body].has_finite_motion());
+        let mut bodies = self.touching[contact].iter();
+        let finite = bodies.any(|&body| self.bodies[body].has_finite_motion());
         let contact = (&self.contacts[contact], self.friction[contact]);
         let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
         let compliant = contact.0.law.get().level() == Level::GapAndRate;
@@ -120,6 +127,28 @@ pub fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
     (body(&contact.secondary).unwrap_or(0), primary)
 }
 
+/// All bodies of each contact, ascending: those of its [`sides`], and others where a side has several.
+pub(crate) fn touching(model: &Model) -> Vec<Vec<usize>> {
+    let many = |contact: &ModelContact| contact.parts.is_some();
+    let mut owners = BTreeMap::new();
+    if model.contacts.iter().any(many) {
+        for (body, of) in model.bodies.iter().enumerate() {
+            owners.extend(of.spec.cells.iter().map(|&cell| (cell, body)));
+        }
+    }
+    let of = |contact: &ModelContact| {
+        let (secondary, primary) = sides(contact, model);
+        let mut bodies: BTreeSet<usize> =
+            [Some(secondary), primary].into_iter().flatten().collect();
+        if let (true, ModelTarget::Surface(primary)) = (many(contact), &contact.primary) {
+            let faces = contact.secondary.faces.iter().chain(&primary.faces);
+            bodies.extend(faces.filter_map(|face| owners.get(&face.parent)));
+        }
+        bodies.into_iter().collect()
+    };
+    model.contacts.iter().map(of).collect()
+}
+
 /// A contact with its points and its target by system number. `x`: reference coordinates by system number, m.
 pub(crate) fn numbered(
     contact: &ModelContact,
@@ -179,7 +208,12 @@ pub(crate) fn numbered(
         Target::Surface(primary) => {
             let secondary = faces(surface);
             let needed = contact.depth.is_some() || Sight::is_needed(&secondary, primary);
-            needed.then(|| Sight::new((&points, &secondary), primary, x, contact.depth))
+            let sight = || Sight::new((&points, &secondary), primary, x, contact.depth);
+            let needed = needed || contact.parts.is_some();
+            needed.then(|| match &contact.parts {
+                Some(parts) => sight().with_parts(parts),
+                None => sight(),
+            })
         }
         Target::Rigid(_) => None,
     };

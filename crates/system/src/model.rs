@@ -5,7 +5,7 @@ use std::sync::Arc;
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
 use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
-use carom_contact::{Initial, Integration, Law, Obstacle, Sliding};
+use carom_contact::{Initial, Integration, Law, Obstacle, Parts, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
 
@@ -341,6 +341,8 @@ pub struct ModelContact {
     pub depth: Option<f64>,
     /// Whether gaps of points that are far from what they face are not looked for, in implicit steps as in explicit ones.
     pub near_only: bool,
+    /// The bodies of the faces where a side has several, and which of them do not touch each other.
+    pub parts: Option<Parts>,
     /// Duration of a flight that ends an impact, s; `None`: by waves and steps.
     pub merge_within: Option<f64>,
     /// The point that the moment of its forces is reported about, m; `None`: no moment is.
@@ -367,6 +369,7 @@ impl ModelContact {
             initial: Initial::Keep,
             depth: None,
             near_only: false,
+            parts: None,
             moment_about: None,
             merge_within: None,
         }

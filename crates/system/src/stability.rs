@@ -73,9 +73,8 @@ impl System {
     pub fn critical_with(&self, bodies: f64) -> f64 {
         let (springs, dashpots) = self.discrete_bounds();
         let explicit = |body: usize| self.is_explicit(self.zone_of_body[body]);
-        let touching = self.contacts.iter().zip(&self.sides);
-        let touching =
-            touching.filter(|(_, (one, other))| explicit(*one) || other.is_some_and(explicit));
+        let touching = self.contacts.iter().zip(&self.touching);
+        let touching = touching.filter(|(_, bodies)| bodies.iter().any(|&body| explicit(body)));
         let contacts = touching
             .map(|(contact, _)| self.contact_bound(contact))
             .sum::<f64>();

@@ -76,7 +76,10 @@ pub struct System {
     /// Faces of the secondary surface of each contact, their nodes by system number.
     pub secondary_faces: Vec<Vec<Face>>,
     /// Bodies of each contact: the secondary's, and the primary's unless it is rigid.
+    /// Where a side has several, the first of them.
     pub sides: Vec<(usize, Option<usize>)>,
+    /// All bodies of each contact, ascending.
+    pub touching: Vec<Vec<usize>>,
     /// First contact point of each contact in the arrays over all points, and one end more.
     pub first_point: Vec<usize>,
     /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`](crate::Model::length)).

@@ -57,6 +57,37 @@ pub fn damaged(content: &[u8], state: &mut u64) -> Vec<u8> {
     content
 }
 
+/// A checkpoint with one of its parts damaged, and the lengths and the checksum of what it then has. `digits`: the checksum of what follows
+/// the first line. Of a content that is no checkpoint, the content.
+pub fn forged(content: &[u8], state: &mut u64, digits: impl Fn(&[u8]) -> String) -> Vec<u8> {
+    forge(content, state, digits).unwrap_or_else(|| content.to_vec())
+}
+
+fn forge(content: &[u8], state: &mut u64, digits: impl Fn(&[u8]) -> String) -> Option<Vec<u8>> {
+    const PARTS: &str = "\"parts\":[";
+    let mut lines = content.splitn(3, |byte| *byte == b'\n');
+    let mut line = || lines.next();
+    let first = std::str::from_utf8(line()?).ok()?;
+    let head = std::str::from_utf8(line()?).ok()?;
+    let mut rest = line()?;
+    let (format, _) = first.rsplit_once(' ')?;
+    let (before, lengths) = head.split_once(PARTS)?;
+    let (lengths, after) = lengths.split_once(']')?;
+    let mut parts = Vec::new();
+    for length in lengths.split(',') {
+        let (part, others) = rest.split_at_checked(length.parse().ok()?)?;
+        parts.push(part.to_vec());
+        rest = others;
+    }
+    let chosen = draw(state, parts.len());
+    parts[chosen] = damaged(&parts[chosen], state);
+    let lengths: Vec<String> = parts.iter().map(|part| part.len().to_string()).collect();
+    let head = format!("{before}{PARTS}{}]{after}\n", lengths.join(","));
+    let rest = [head.into_bytes(), parts.concat()].concat();
+    let first = format!("{format} {}\n", digits(&rest));
+    Some([first.into_bytes(), rest].concat())
+}
+
 /// Another number in place of one that is written in digits.
 fn another_number(content: &[u8], state: &mut u64) -> Vec<u8> {
     let from = draw(state, content.len());

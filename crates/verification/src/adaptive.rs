@@ -10,7 +10,7 @@
 //! and say why. What was cut at an instant and resumed must have the same bytes.
 
 use carom_contact::Law;
-use carom_dynamics::{Adaptive, Closing, Driver, Scheme, State, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Scheme, State};
 
 use crate::Error;
 use crate::bars::{Against, Run, SLOW};
@@ -46,7 +46,7 @@ fn rules(run: &Run, growth: Option<f64>) -> Adaptive {
 fn driver(run: &Run, growth: Option<f64>) -> Result<Driver, Error> {
     let mut model = run.model()?;
     model.adaptive = Some(rules(run, growth));
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 /// What a flight to the wall gives.
@@ -187,7 +187,7 @@ fn falling() -> Result<Row, Error> {
         body.velocity = [0.0; 3];
     }
     model.gravity = [1.0, 0.0, 0.0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..100 {
         driver.step()?;
     }
@@ -205,7 +205,7 @@ fn resumed() -> Result<Row, Error> {
     let system = {
         let mut model = run.model()?;
         model.adaptive = Some(rules(&run, Some(0.01)));
-        System::new(model)?
+        crate::witness::system(model)?
     };
     for _ in 0..150 {
         let state = State::from_bytes(&system, &whole.state().to_bytes()?)?;

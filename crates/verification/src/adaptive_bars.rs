@@ -13,7 +13,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Initial, Law};
-use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelContact, ModelTarget, Scheme, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelContact, ModelTarget, Scheme};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Elastic;
 use carom_mesh::generate;
@@ -142,7 +142,7 @@ impl Pair {
     }
 
     fn run(&self) -> Result<Outcome, Error> {
-        let mut driver = Driver::new(System::new(self.model()?)?)?;
+        let mut driver = Driver::new(crate::witness::system(self.model()?)?)?;
         let duration = 2.0 * LENGTHS[1] / wave_speed(&ALUMINIUM);
         let start = self.gap() / SPEED;
         let end = start + 1.3 * duration;

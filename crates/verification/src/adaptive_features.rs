@@ -8,7 +8,7 @@
 //! iterations may leave over, at most 1e-7.
 
 use carom_contact::{Basis, Integration, Law, Sliding};
-use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Model, ModelTarget, Scheme};
 use carom_materials::Plane;
 
 use crate::Error;
@@ -60,7 +60,7 @@ fn model(feature: Feature, scheme: Scheme, law: Law, flight: f64) -> Result<Mode
 /// The first forces, N, and what is left over.
 fn fly(model: Model) -> Result<(Vec<f64>, Balances), Error> {
     let end = END * model.dt;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut forces = Vec::new();
     while driver.state().time < end {
         driver.step()?;

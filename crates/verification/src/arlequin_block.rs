@@ -10,10 +10,10 @@
 use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting};
 use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Sphere;
-use carom_dynamics::{Costs, Driver, Model, ModelBody, ModelLink, ModelTarget, Solver, System};
+use carom_dynamics::{Costs, Driver, Model, ModelBody, ModelLink, ModelTarget, Solver};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::{CENTRAL, HALF, body, contact, group, surface, theta};
@@ -168,7 +168,7 @@ pub(crate) const CHECK: Check = Check {
                 200,
             ),
         };
-        let mut zones = Zones::new(&block.zoned()?)?;
+        let mut zones = crate::witness::zones(&block.zoned()?)?;
         let mut glued = Vec::new();
         while glued.len() < steps {
             zones.step()?;
@@ -179,7 +179,7 @@ pub(crate) const CHECK: Check = Check {
         let mut uniform = block.uniform()?;
         // the cost that is compared is that of factors
         uniform.nonlinear.iteration.solver = Solver::Direct;
-        let mut driver = Driver::new(System::new(uniform)?)?;
+        let mut driver = Driver::new(crate::witness::system(uniform)?)?;
         let mut fine = Vec::new();
         while fine.len() < steps {
             driver.step()?;

@@ -23,7 +23,7 @@
 
 use carom_dynamics::Scheme;
 use carom_dynamics::scheme::Newmark;
-use carom_zones::{LinkKind, Zones};
+use carom_zones::LinkKind;
 
 use crate::Error;
 use crate::build::CENTRAL;
@@ -175,7 +175,7 @@ fn transits(kind: LinkKind, substeps: u32, outer: Scheme, width: f64) -> Result<
         schemes: [usual.schemes[0], outer],
         ..usual
     };
-    let mut zones = Zones::new(&bar.zoned()?)?;
+    let mut zones = crate::witness::zones(&bar.zoned()?)?;
     let start = motion(&zones, pulse(18.0, width));
     zones.restart(&start)?;
     let first = zones.balance();

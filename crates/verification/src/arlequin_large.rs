@@ -11,7 +11,7 @@ use carom_bodies::{CellWeights, Kinematics};
 use carom_dynamics::{Model, ModelLink};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::{CENTRAL, body, group, theta};
@@ -87,7 +87,7 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => (10, 300.0),
             Size::Full => (40, 20_000.0),
         };
-        let mut zones = Zones::new(&zoned(n)?)?;
+        let mut zones = crate::witness::zones(&zoned(n)?)?;
         if size == Size::Quick {
             zones.join()?;
         }

@@ -140,7 +140,7 @@ impl Strip {
             });
         }
         let zone = |name: &str, body, scheme| ModelZone::new(name, vec![body], (scheme, 1));
-        Ok(Zones::new(&Zoned {
+        Ok(crate::witness::zones(&Zoned {
             zones: vec![zone("fine", 0, theta(0.5)), zone("coarse", 1, CENTRAL)],
             links: vec![ModelLink {
                 name: "strip".to_string(),
@@ -185,7 +185,7 @@ impl Strip {
             ratio: RATIO,
             ..GluedBar::usual(self.length())
         };
-        let mut zones = Zones::new(&bar.zoned()?)?;
+        let mut zones = crate::witness::zones(&bar.zoned()?)?;
         let start = motion(&zones, pulse(self.border() - 3.0 * width, width));
         zones.restart(&start)?;
         let [_, all] = characteristics(&zones.drivers()[0], 0.0, self.border());

@@ -13,7 +13,6 @@
 //! Tolerance: one unit of the printed digit, or 2 % of the number where that is more.
 
 use carom_arlequin::{Coupling, Mediator, Model as Side, Profile, Weighting};
-use carom_zones::Zones;
 
 use crate::Error;
 use crate::check::{Check, Row};
@@ -115,7 +114,7 @@ pub(crate) const CHECK: Check = Check {
 
 /// Amplitude of what comes back of a pulse of this width over the pulse's.
 fn reflected(bar: &GluedBar, width: f64, start: f64) -> Result<f64, Error> {
-    let mut zones = Zones::new(&bar.zoned()?)?;
+    let mut zones = crate::witness::zones(&bar.zoned()?)?;
     let border = (bar.zone - bar.overlap) as f64;
     let before = start * width;
     let start = motion(&zones, pulse(border - before, width));

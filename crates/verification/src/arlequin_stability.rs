@@ -72,7 +72,7 @@ fn bar(kind: LinkKind, schemes: [Scheme; 2], courant: f64, substeps: u32) -> Glu
 
 /// Spectral radius of the step.
 fn radius(bar: &GluedBar) -> Result<f64, Error> {
-    let mut zones = Zones::new(&bar.zoned()?)?;
+    let mut zones = crate::witness::zones(&bar.zoned()?)?;
     let rest = zones.state();
     let free = free(&zones);
     let entries = |mut state: ZonesState| -> Vec<f64> {

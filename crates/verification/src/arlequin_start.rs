@@ -39,7 +39,7 @@ pub(crate) const CHECK: Check = Check {
 
 fn projected() -> Result<Vec<Row>, Error> {
     let zoned = GluedBar::usual(60).zoned()?;
-    let mut zones = Zones::new(&zoned)?;
+    let mut zones = crate::witness::zones(&zoned)?;
     // no two alike, no pattern
     let noise = |x: f64| (1e4 * x + 0.3).sin() + 0.5;
     let start = motion(&zones, |x| [0.0, noise(x)]);
@@ -103,7 +103,7 @@ fn flight(kind: LinkKind, substeps: u32) -> Result<(f64, f64), Error> {
         substeps,
         ..GluedBar::usual(60)
     };
-    let mut zones = Zones::new(&bar.zoned()?)?;
+    let mut zones = crate::witness::zones(&bar.zoned()?)?;
     let start = motion(&zones, |_| [0.0, 1.0]);
     zones.restart(&start)?;
     let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));

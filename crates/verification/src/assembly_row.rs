@@ -198,7 +198,7 @@ fn balances(assemblies: u32, steps: u64) -> Result<Vec<Row>, Error> {
     let end = steps as f64 * STEP;
     let model = model(assemblies, end)?;
     let sets = sets(&model);
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let (mut input, mut before) = (0.0_f64, 0.0);
     for _ in 0..steps {
         driver.step()?;
@@ -248,8 +248,8 @@ pub(crate) const CHECK: Check = Check {
         let rod = rod_in_grid::model(newmark(0.25, 0.5), None, 2e-4, 0.3)?;
         for model in [model(assemblies, end)?, rod] {
             let again = model.clone();
-            let system: Arc<System> = one.install(|| System::new(model))?;
-            let second = two.install(|| System::new(again))?;
+            let system: Arc<System> = one.install(|| crate::witness::system(model))?;
+            let second = two.install(|| crate::witness::system(again))?;
             battery.compare(&run(&one, &system, steps)?, &run(&two, &second, steps)?)?;
             let quarters = [1, 2, 3].map(|part| part * steps / 4);
             cuts(

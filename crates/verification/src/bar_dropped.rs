@@ -12,7 +12,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::Plane;
-use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, System, march};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, march};
 use carom_exact::{Bar, Impact};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
@@ -147,5 +147,5 @@ fn driver(elements: usize, material: Elastic) -> Result<Driver, Error> {
             0.5 * LENGTH / elements as f64 / 30.0,
         )
     };
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }

@@ -11,7 +11,7 @@
 use carom_bodies::MassKind;
 use carom_contact::Sliding;
 use carom_dynamics::scheme::ContactStabilised;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::bars::{Against, Run};
@@ -32,7 +32,7 @@ fn growth(energy: &[f64], start: f64) -> f64 {
 }
 
 fn blocks() -> Result<[Row; 2], Error> {
-    let system = System::new(SMALLEST.model(SCHEME, DISPLACEMENT, Sliding::Small)?)?;
+    let system = crate::witness::system(SMALLEST.model(SCHEME, DISPLACEMENT, Sliding::Small)?)?;
     let mut driver = Driver::new(system)?;
     let start = driver.state().ledger.balance.energy();
     let mut energy = Vec::new();

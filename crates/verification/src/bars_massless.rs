@@ -8,7 +8,7 @@
 //! contact changes by P Δg / 2 in steps where a point closes or opens, and the force error are regressions, to 1 %.
 
 use carom_contact::Sliding;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 use carom_system::Error as Refusal;
 
 use crate::Error;
@@ -21,7 +21,7 @@ use crate::figures::run;
 fn blocks(sliding: Sliding, own: f64) -> Result<Vec<Row>, Error> {
     let mut model = FINER.model(newmark(0.25, 0.5), DISPLACEMENT, sliding)?;
     model.contacts[0].massless = true;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut driver = Driver::new(system.clone())?;
     let mass = |k: usize| system.body_mass(k);
     let exact = [0.6 * 0.6 * 0.4 * 1000.0, 0.5 * 1000.0];

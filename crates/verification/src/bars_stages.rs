@@ -15,7 +15,7 @@ use carom_contact::Law;
 use carom_contact::Sliding;
 use carom_contact::law::{Capture, Restitution};
 use carom_dynamics::scheme::{Krenk, LaursenLove, NonsmoothAlpha, PaoliSchatzman};
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::bars::{Against, Run};
@@ -138,7 +138,7 @@ fn conserving(rows: &mut Vec<Row>) -> Result<(), Error> {
 }
 
 fn blocks() -> Result<[Row; 2], Error> {
-    let system = System::new(SMALLEST.model(LOVE, DISPLACEMENT, Sliding::Small)?)?;
+    let system = crate::witness::system(SMALLEST.model(LOVE, DISPLACEMENT, Sliding::Small)?)?;
     let mut driver = Driver::new(system)?;
     let start = driver.state().ledger.balance.energy();
     let (mut worst, mut impulse): (f64, f64) = (0.0, 0.0);

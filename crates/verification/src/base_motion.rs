@@ -26,7 +26,7 @@ use carom_bodies::{Curve, Kinematics, MassKind};
 use carom_contact::law::Level;
 use carom_contact::{Law, Plane};
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelBody, ModelTarget, Prescribed, Scheme, Support, System,
+    Amplitude, Driver, Model, ModelBody, ModelTarget, Prescribed, Scheme, Support,
 };
 use carom_materials::Elastic;
 use carom_mesh::generate;
@@ -72,7 +72,7 @@ fn oscillator(
     points.dashpot(mass, 2.0 * 2.0 * damping * omega);
     let mut model = points.model(newmark(0.25, 0.5), dt);
     model.nonlinear.base[0] = Some(base);
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut run = Driver::new(Arc::clone(&system))?;
     let (mut error, mut most) = ([0.0_f64; 2], [0.0_f64; 2]);
     for step in 1..=steps {
@@ -165,7 +165,7 @@ fn frame(end: f64) -> Result<Vec<Row>, Error> {
             displacement: [Some(table), None, None],
         });
     }
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut run = Driver::new(Arc::clone(&system))?;
     let exact = |t: f64| -> [f64; 3] {
         let mut u = [0.0; 3];
@@ -241,7 +241,7 @@ const OF_BAR: usize = 8192;
 /// The displacement of a node relative to the first support, and the force of the first contact if there is one, after each
 /// step.
 fn relative(model: Model, [node, support]: [u32; 2], steps: usize) -> Result<Vec<[f64; 2]>, Error> {
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let place = |node: u32| system.unknowns.first(system.number[node as usize]);
     let [node, support] = [node, support].map(place);
     let mut run = Driver::new(Arc::clone(&system))?;
@@ -323,7 +323,7 @@ fn falls() -> Result<Vec<Row>, Error> {
             true => model.nonlinear.base[0] = Some(Amplitude::constant(GRAVITY)),
             false => model.gravity[0] = -GRAVITY,
         }
-        let mut run = Driver::new(System::new(model)?)?;
+        let mut run = Driver::new(crate::witness::system(model)?)?;
         let mut u = Vec::new();
         for _ in 0..150 {
             run.step()?;

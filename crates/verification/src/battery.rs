@@ -103,7 +103,7 @@ impl Battery {
     pub(crate) fn system(&mut self, model: Model) -> Result<Option<Arc<System>>, Error> {
         let senseless = is_senseless(model.scheme, model.contacts[0].law);
         self.senseless += usize::from(senseless);
-        match System::new(model) {
+        match crate::witness::system(model) {
             Ok(system) => Ok(Some(system)),
             Err(
                 carom_system::Error::DisplacementLaw { .. }

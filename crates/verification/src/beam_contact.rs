@@ -22,7 +22,7 @@
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, SectionShape};
 use carom_contact::law::{Adhesion, Capture, Crush, Curve, Damped, Penalty, Stop};
 use carom_contact::{Initial, Law, Sliding};
-use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Preload, State, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Preload, State};
 use carom_mesh::{ElementId, Mesh, Surface, generate};
 
 use crate::Error;
@@ -54,7 +54,7 @@ fn around(mesh: &Mesh, name: &str, body: &ModelBody) -> Result<Surface, Error> {
 }
 
 fn run(model: Model, steps: usize) -> Result<(Driver, Vec<f64>), Error> {
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut forces = Vec::new();
     for _ in 0..steps {
         driver.step()?;

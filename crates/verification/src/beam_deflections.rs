@@ -10,7 +10,7 @@
 //! condition of about (L/h)⁴ n⁴ ε = 1e-7 at 20 elements in the worst case, of which the smooth deflection sees a small part.
 
 use carom_bodies::{BeamSection, BeamTheory, SectionForces};
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Preload, Support, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Preload, Support};
 use carom_mesh::Mesh;
 
 use crate::Error;
@@ -51,7 +51,7 @@ fn at_rest(
     };
     model.nonlinear.loads = vec![load];
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut driver = Driver::new(system)?;
     driver.step()?;
     let (system, u) = (driver.system(), &driver.state().motion.u);

@@ -18,7 +18,7 @@ use carom_bodies::{
     BeamSection, BeamTheory, DiscreteKind, DiscreteSpec, FluidGap, Kinematics, MassKind, Release,
     SectionShape,
 };
-use carom_dynamics::{Damping, Driver, Model, ModelBody, ModelConstraint, ModelDiscrete, System};
+use carom_dynamics::{Damping, Driver, Model, ModelBody, ModelConstraint, ModelDiscrete};
 use carom_dynamics::{NodalLoad, Order};
 use carom_elements::Kind;
 use carom_mesh::{Mesh, generate};
@@ -121,7 +121,7 @@ fn foundation(elements: usize) -> Result<Vec<Row>, Error> {
         end: 0,
         rotations: [false, false, true],
     }];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..300 {
         driver.step()?;
     }
@@ -155,7 +155,7 @@ fn added_mass(elements: usize) -> Result<Vec<Row>, Error> {
     let mut model = supported(elements, section)?;
     model.gravity = [0.0, -10.0, 0.0];
     let weight: f64 = {
-        let system = System::new(model)?;
+        let system = crate::witness::system(model)?;
         let nodes = 0..system.x.len() as u32;
         nodes
             .map(|node| system.unknowns.vector(node, &system.load)[1])
@@ -266,7 +266,7 @@ fn damping(elements: usize) -> Result<Vec<Row>, Error> {
         mass: RATE,
         stiffness: 0.0,
     }];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }
@@ -327,7 +327,7 @@ fn struck(elements: usize, linked: Option<f64>) -> Result<Driver, Error> {
         moment: [1.0, 0.0, 0.0],
         amplitude: Amplitude::constant(1.0),
     }];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..200 {
         driver.step()?;
     }

@@ -165,7 +165,7 @@ fn run(
     let time = (newmark(0.25, 0.5), period / steps as f64);
     let held = (point, vec![supports]);
     let model = model((mesh, vec![body]), held, [stiffness, gap], time)?;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     history(&mut driver, steps)
 }
 

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use carom_bodies::BeamTheory;
-use carom_dynamics::{Driver, Model, System};
+use carom_dynamics::{Driver, Model};
 
 use crate::Error;
 use crate::beams::{exact, section, straight};
@@ -38,7 +38,7 @@ fn phase_velocity(
     let count = (LENGTHS * elements as f64) as usize;
     let (mesh, body) = straight([[0.0; 3], [length, 0.0, 0.0]], count, 2, section)?;
     let dt = TAU / omega / STEPS;
-    let system = System::new(Model::new(vec![body], mesh, newmark(0.25, 0.5), dt))?;
+    let system = crate::witness::system(Model::new(vec![body], mesh, newmark(0.25, 0.5), dt))?;
     let mut driver = Driver::new(system)?;
     let system = driver.system();
     let (mut u, mut v) = (vec![0.0; system.unknowns()], vec![0.0; system.unknowns()]);

@@ -162,7 +162,7 @@ struct Impact {
 }
 
 fn impact(model: Model, until: f64) -> Result<Impact, Error> {
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let (unknowns, products) = (system.unknowns(), products(&system));
     let mut driver = Driver::new(system)?;
     let mut forces = Vec::new();

@@ -15,7 +15,7 @@
 use carom_algebra::tensor::Vec3;
 use carom_arlequin::Weighting;
 use carom_bodies::BeamTheory;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme};
 use carom_materials::Elastic;
 
 use crate::Error;
@@ -145,7 +145,7 @@ fn elastica(load: f64, steps: u64) -> Result<[f64; 2], Error> {
     let middle = (0..model.mesh.nodes.len())
         .find(|&node| model.mesh.nodes[node].iter().all(|x| x.abs() < 1e-9))
         .unwrap_or(0);
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }

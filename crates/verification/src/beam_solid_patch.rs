@@ -19,7 +19,7 @@
 use carom_arlequin::{Profile, Row as Coupled, Weighting};
 use carom_bodies::BeamTheory;
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support, System,
+    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support,
 };
 use carom_materials::Elastic;
 
@@ -159,7 +159,7 @@ fn error(patch: Patch, bar: &Spliced, change: Change) -> Result<f64, Error> {
     }];
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
     let mesh = model.mesh.clone();
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     driver.step()?;
     let system = driver.system();
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

@@ -114,7 +114,7 @@ fn deflections(bar: &Spliced, joint: Joint) -> Result<Vec<Row>, Error> {
         let nodes: Vec<u32> = (0..model.mesh.nodes.len() as u32)
             .filter(|&n| model.mesh.nodes[n as usize].iter().all(|x| x.abs() < 1e-9))
             .collect();
-        let mut driver = Driver::new(System::new(model)?)?;
+        let mut driver = Driver::new(crate::witness::system(model)?)?;
         driver.step()?;
         let system = driver.system();
         let number = system.number[nodes[0] as usize];
@@ -151,7 +151,7 @@ fn frequencies(bar: &Spliced, joint: Joint) -> Result<Vec<Row>, Error> {
     let twist = (shear / (MATERIAL.density * (about_y + about_z))).sqrt();
     let quarter = |k: usize| (2 * k + 1) as f64 / (4.0 * LENGTH);
     expected.push(("torsion", (0..5).map(|k| quarter(k) * twist).collect()));
-    let system = System::new(model(bar, joint)?)?;
+    let system = crate::witness::system(model(bar, joint)?)?;
     let modes = carom_reduction::modes(&system, 26, &mut |_, _| ())?;
     let mut found: [Vec<f64>; 3] = Default::default();
     for mode in 0..modes[0].len() {

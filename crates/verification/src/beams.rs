@@ -2,7 +2,7 @@
 
 use carom_algebra::dense_eigen::eigenvalues;
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, Scratch, SectionShape};
-use carom_dynamics::{Model, ModelBody, Scheme, Support, System};
+use carom_dynamics::{Model, ModelBody, Scheme, Support};
 use carom_exact::beam;
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
@@ -78,7 +78,7 @@ pub(crate) fn frequencies(
 
 /// The same of a model.
 pub(crate) fn frequencies_of(model: Model) -> Result<Vec<f64>, Error> {
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let free: Vec<usize> = (0..system.unknowns())
         .filter(|&i| !system.fixed[i])
         .collect();

@@ -13,7 +13,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::Law;
 use carom_contact::law::Adhesion;
-use carom_dynamics::{Driver, Model, Scheme, System, march};
+use carom_dynamics::{Driver, Model, Scheme, march};
 use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
@@ -51,7 +51,7 @@ fn model(n: usize, scheme: Scheme, law: Law) -> Result<Model, Error> {
 
 /// The block after its impact.
 fn drop(n: usize, scheme: Scheme, law: Law) -> Result<Driver, Error> {
-    let mut driver = Driver::new(System::new(model(n, scheme, law)?)?)?;
+    let mut driver = Driver::new(crate::witness::system(model(n, scheme, law)?)?)?;
     let end = 6.0 * SIDE / RUBBER.wave_speed(Plane::Full);
     march(&mut driver, end, &mut [], &|| false)?;
     Ok(driver)

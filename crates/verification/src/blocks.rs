@@ -154,7 +154,7 @@ fn rows(name: &str, blocks: Blocks, sliding: Sliding) -> Result<Vec<Row>, Error>
         Sliding::Small => (HALF, penetration_bound_half),
         Sliding::Finite => (NOW, penetration_bound_now),
     };
-    let system = System::new(blocks.model(theta(0.5), law, sliding)?)?;
+    let system = crate::witness::system(blocks.model(theta(0.5), law, sliding)?)?;
     let mut driver = Driver::new(system.clone())?;
     let mut sums = Sums::default();
     let mut fastest = SPEED;

@@ -14,7 +14,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
-use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme};
 use carom_materials::{Elastic, Law as Material, StVenantKirchhoff};
 use carom_mesh::{Mesh, generate};
 
@@ -100,7 +100,7 @@ impl Blocks {
 
     /// Contact force per area by step, Pa.
     fn pressures(&self) -> Result<Vec<f64>, Error> {
-        let system = System::new(self.model()?)?;
+        let system = crate::witness::system(self.model()?)?;
         let area = if self.dim == 3 { 1.0 } else { THICKNESS };
         let mut run = Driver::new(system)?;
         // 2 L / c = 1 s

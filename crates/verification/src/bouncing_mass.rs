@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use carom_dynamics::{Driver, Model, Scheme, System};
+use carom_dynamics::{Driver, Model, Scheme};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};
@@ -28,7 +28,7 @@ fn rows(scheme: Scheme, dt: f64) -> Result<Vec<Row>, Error> {
     let velocity = down.map(|n| SPEED * n);
     let mass = points.mass(1.0, [0.3, 0.0, 0.0], [[0.0; 3], velocity]);
     points.stop((mass, None), down, DROP, [STOP, 0.0])?;
-    let mut run = Driver::new(System::new(Model {
+    let mut run = Driver::new(crate::witness::system(Model {
         gravity: down.map(|n| GRAVITY * n),
         ..points.model(scheme, dt)
     })?)?;

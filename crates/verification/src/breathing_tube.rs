@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::{Formulation, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, Nonlinear, Scheme};
 use carom_materials::{Elastic, Law, MooneyRivlin, NeoHooke, StVenantKirchhoff};
 use carom_mesh::generate;
 
@@ -83,7 +83,7 @@ impl Tube {
             mesh,
         };
         model.nonlinear.iteration.tolerance = 1e-13;
-        let system = System::new(model)?;
+        let system = crate::witness::system(model)?;
         let start = |x: &[f64; 3]| {
             let out = SPEED * INNER / (x[0] * x[0] + x[1] * x[1]);
             [out * x[0] - self.spin * x[1], out * x[1] + self.spin * x[0]]

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::Error;
 use crate::kind::{Counts, Kind};
+use crate::witness::{Shown, look};
 use crate::words::words;
 
 /// How large the models of a check are.
@@ -274,6 +275,8 @@ pub struct Made {
     pub rows: Result<Vec<Row>, Error>,
     /// Wall time, s.
     pub seconds: f64,
+    /// What it has shown; nothing unless somebody looked.
+    pub shown: Shown,
 }
 
 impl Made {
@@ -284,14 +287,15 @@ impl Made {
     }
 }
 
-/// Runs these checks, or those of them whose name contains `filter`, and writes one line per row; returns what each found too.
+/// Runs these checks, or those of them whose name contains `filter`, and writes one line per row; returns what each found too, and
+/// where somebody `looks` what it has shown.
 ///
 /// # Errors
 /// Only of `out`; a check that cannot be made is written and counted as failed.
 pub fn verify(
     checks: &[Check],
     filter: Option<&str>,
-    size: Size,
+    (size, looks): (Size, bool),
     out: &mut dyn Write,
 ) -> io::Result<(Verdict, Vec<Made>)> {
     let mut verdict = Verdict::default();
@@ -301,7 +305,10 @@ pub fn verify(
         writeln!(out, "{}: {}", check.name, check.fact)?;
         let begin = Instant::now();
         verdict.checks += 1;
-        let rows = (check.run)(size);
+        let (rows, shown) = match looks {
+            true => look(|| (check.run)(size)),
+            false => ((check.run)(size), Shown::default()),
+        };
         match &rows {
             Ok(rows) => {
                 for row in rows {
@@ -321,6 +328,7 @@ pub fn verify(
             check: *check,
             rows,
             seconds,
+            shown,
         });
     }
     writeln!(out, "{verdict}")?;
@@ -402,7 +410,7 @@ mod tests {
         let checks = [check("one", rows), check("two", failing)];
         let run = |filter| {
             let mut out = Vec::new();
-            let (verdict, made) = verify(&checks, filter, Size::Quick, &mut out).unwrap();
+            let (verdict, made) = verify(&checks, filter, (Size::Quick, false), &mut out).unwrap();
             assert_eq!(made.len(), verdict.checks);
             assert!(!made.iter().any(Made::holds));
             let text = String::from_utf8(out).unwrap();
@@ -429,7 +437,7 @@ mod tests {
     #[test]
     fn a_check_that_only_shows_holds() {
         let checks = [check("one", |_| Ok(vec![Row::shown("d", 3.0)]))];
-        let (verdict, _) = verify(&checks, None, Size::Quick, &mut Vec::new()).unwrap();
+        let (verdict, _) = verify(&checks, None, (Size::Quick, false), &mut Vec::new()).unwrap();
         assert!(verdict.holds());
     }
 }

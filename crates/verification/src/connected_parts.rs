@@ -16,9 +16,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Motion, Obstacle, Plane, Sliding, Translation};
-use carom_dynamics::{
-    Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelTarget, Nonlinear, System,
-};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, ModelBody, ModelTarget, Nonlinear};
 use carom_materials::{Elastic, Law as Material, NeoHooke, StVenantKirchhoff};
 use carom_mesh::{Mesh, generate};
 
@@ -66,7 +64,7 @@ fn struck(n: usize, steps: usize) -> Result<[usize; 2], Error> {
     let mut blow = contact(secondary, primary, CLOSED);
     blow.sliding = Sliding::Finite;
     blow.friction = 0.3;
-    let mut driver = Driver::new(System::new(Model {
+    let mut driver = Driver::new(crate::witness::system(Model {
         contacts: vec![blow],
         supports: vec![support(&mesh, "block.bottom", [true; 3])?],
         ..Model::new(vec![block, striker], mesh, theta(0.75), 1e-4)
@@ -112,7 +110,7 @@ fn carried(steps: usize) -> Result<(usize, usize, f64), Error> {
         kind: LoadKind::Traction([500.0, -1e4, 0.0]),
         amplitude: Amplitude::new(vec![[0.0, 0.0], [5e-3, 1.0], [1e-2, 0.4]])?,
     };
-    let mut driver = Driver::new(System::new(Model {
+    let mut driver = Driver::new(crate::witness::system(Model {
         contacts: vec![rubbing],
         nonlinear: Nonlinear {
             loads: vec![press],
@@ -153,7 +151,7 @@ fn knock(n: usize, second: fn(Elastic) -> Material) -> Result<Vec<f64>, Error> {
     let secondary = surface(&mesh, "one.right", &one)?;
     let primary = ModelTarget::Surface(surface(&mesh, "two.left", &two)?);
     let dt = 0.5 / n as f64;
-    let mut driver = Driver::new(System::new(Model {
+    let mut driver = Driver::new(crate::witness::system(Model {
         contacts: vec![contact(secondary, primary, CLOSED)],
         ..Model::new(vec![one, two], mesh, theta(0.5), dt)
     })?)?;
@@ -204,7 +202,7 @@ fn pieces(one: bool) -> Result<(Vec<f64>, f64), Error> {
         ..Model::new(bodies, mesh, theta(0.5), 2e-3)
     };
     model.nonlinear.iteration.tolerance = 1e-12;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut forces = Vec::new();
     for _ in 0..60 {
         driver.step()?;

@@ -17,7 +17,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::Adhesion;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelTarget, Nonlinear, Preload, Prescribed, Support, System,
+    Amplitude, Driver, Model, ModelTarget, Nonlinear, Preload, Prescribed, Support,
 };
 use carom_materials::{Elastic, Law as Material, NeoHooke, Plane};
 use carom_mesh::raise::raise;
@@ -236,7 +236,7 @@ impl Patch {
 
     /// The blocks at the end of the static stage.
     fn loaded(&self) -> Result<Driver, Error> {
-        let mut newton = Driver::new(System::new(self.model()?)?)?;
+        let mut newton = Driver::new(crate::witness::system(self.model()?)?)?;
         for _ in 0..STAGE.1 {
             newton.step()?;
         }

@@ -16,7 +16,7 @@ use std::path::Path;
 
 use carom_bodies::Kinematics;
 use carom_contact::{Motion, Obstacle, Plane, RigidSurface, Translation};
-use carom_dynamics::{Driver, Model, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;
 use carom_mesh::read::read;
@@ -54,7 +54,7 @@ fn newton(mesh: Mesh, belt: Obstacle) -> Result<Driver, Error> {
     let foot = surface(&mesh, "crate.bottom", &crate_)?;
     let mut rubbing = contact(foot, ModelTarget::Rigid(belt), NOW);
     rubbing.friction = MU;
-    Ok(Driver::new(System::new(Model {
+    Ok(Driver::new(crate::witness::system(Model {
         contacts: vec![rubbing],
         gravity: [0.0, -GRAVITY, 0.0],
         ..Model::new(vec![crate_], mesh, theta(0.6), STEP)

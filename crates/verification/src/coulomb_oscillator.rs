@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::Curve;
 use carom_contact::Law;
-use carom_dynamics::{Driver, Model, Scheme, System};
+use carom_dynamics::{Driver, Model, Scheme};
 
 use crate::Error;
 use crate::build::{DISPLACEMENT, NOW, newmark, plane, theta};
@@ -35,7 +35,7 @@ fn rows((scheme, law): (Scheme, Law), steps: f64, rests: bool) -> Result<Vec<Row
     points.spring(mass, [1.0, 0.0, 0.0], Curve::line(STIFFNESS));
     points.contact(mass, plane(1, 1.0), law, FRICTION);
     let dt = 2.0 * PI / omega / steps;
-    let mut newton = Driver::new(System::new(Model {
+    let mut newton = Driver::new(crate::witness::system(Model {
         gravity: [0.0, -GRAVITY, 0.0],
         ..points.model(scheme, dt)
     })?)?;

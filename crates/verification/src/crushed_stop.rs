@@ -151,7 +151,7 @@ fn follow(driver: &mut Driver, node: usize, blow: &Blow) -> Result<f64, Error> {
 }
 
 fn rows(scheme: Scheme, tolerance: f64) -> Result<Vec<Row>, Error> {
-    let system = System::new(model(scheme)?)?;
+    let system = crate::witness::system(model(scheme)?)?;
     let node = (0..system.x.len())
         .find(|node| system.x[*node][0] == 0.0)
         .unwrap_or_default();

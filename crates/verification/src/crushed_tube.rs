@@ -60,7 +60,7 @@ fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
         let skin = surface(&mesh, "tube.surface", &tube)?;
         contacts.push(contact(skin.clone(), ModelTarget::Surface(skin), NOW));
     }
-    let system: Arc<System> = System::new(Model {
+    let system: Arc<System> = crate::witness::system(Model {
         contacts,
         bodies: vec![tube],
         discrete: Vec::new(),

@@ -25,7 +25,7 @@
 use std::sync::Arc;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, State, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, State, Stepper};
 use carom_materials::{Elastic, J2Plasticity, Law, Plane};
 use carom_mesh::{Mesh, Surface, generate};
 
@@ -105,7 +105,7 @@ fn pulled(name: &str, formulation: Formulation) -> Result<Vec<Row>, Error> {
         supports,
         ..Model::new(vec![body], mesh, CENTRAL, STEP)
     };
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let unknown = 3 * driver.system().number[right as usize] as usize;
     until_deleted(&mut driver, 10_000)?;
     let ledger = &driver.state().ledger;
@@ -170,7 +170,7 @@ fn torn() -> Result<Vec<Row>, Error> {
     soft.yield_stress = 100e6;
     let ends = part(&mesh, "ends", full, |x| (x - 2.5).abs() > 0.1)?;
     let bodies = vec![ModelBody::new(link), ModelBody::new(ends)];
-    let system = System::new(Model::new(bodies, mesh, CENTRAL, 20.0 * STEP))?;
+    let system = crate::witness::system(Model::new(bodies, mesh, CENTRAL, 20.0 * STEP))?;
     let mut driver = Driver::new(Arc::clone(&system))?;
     let velocity = |x: &[f64; 3]| {
         // they turn as well
@@ -247,7 +247,7 @@ fn crushed() -> Result<Vec<Row>, Error> {
         contacts: vec![wall],
         ..Model::new(vec![body], mesh, CENTRAL, 20.0 * STEP)
     };
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let (mut least, way) = (0.0_f64, SPEED * 20.0 * STEP);
     for _ in 0..1500 {
         driver.step()?;
@@ -319,7 +319,7 @@ fn struck(itself: bool) -> Result<Vec<Row>, Error> {
             20.0 * STEP,
         )
     };
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut driver = Driver::new(Arc::clone(&system))?;
     until_deleted(&mut driver, 5_000)?;
     let force = |driver: &Driver| driver.state().interface.force.iter().sum::<f64>();

@@ -14,7 +14,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::{
-    Amplitude, Driver, Load, LoadKind, Model, ModelBody, Preload, Prescribed, Scheme, System,
+    Amplitude, Driver, Load, LoadKind, Model, ModelBody, Preload, Prescribed, Scheme,
 };
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::generate;
@@ -78,7 +78,7 @@ fn cycle() -> Result<Vec<Row>, Error> {
         end,
         steps: turns.len() as u64 * STEPS,
     });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let young = STEEL.initial.young;
     let (mut stress, mut strain, mut size, mut flowed) = (0.0, 0.0, STEEL.yield_stress, 0.0);
     let mut rows = Vec::new();
@@ -146,7 +146,7 @@ fn pulse(elements: usize, scheme: Scheme, part: f64) -> Result<[f64; 3], Error> 
     };
     model.nonlinear.loads = vec![load];
     model.nonlinear.iteration.tolerance = 1e-12;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let steps = (time / dt).round() as usize;
     for _ in 0..steps {
         driver.step()?;

@@ -35,7 +35,7 @@ use carom_bodies::{
 };
 use carom_dynamics::{
     Amplitude, Driver, Model, ModelBody, ModelDiscrete, NodalLoad, Preload, Prescribed,
-    PrescribedTurn, Scheme, System,
+    PrescribedTurn, Scheme,
 };
 use carom_elements::Kind;
 use carom_materials::{Elastic, J2Plasticity, Law};
@@ -122,7 +122,7 @@ fn bent(section: BeamSection, curvatures: &[f64], steps: u64) -> Result<Bent, Er
         end: curvatures.len() as f64,
         steps: steps * curvatures.len() as u64,
     });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let (mut moments, mut dissipated, mut work) = (Vec::new(), Vec::new(), Vec::new());
     for _ in curvatures {
         for _ in 0..steps {
@@ -227,7 +227,7 @@ fn limit(elements: usize) -> Result<Vec<Row>, Error> {
         end: 1.0,
         steps: 40,
     });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..40 {
         driver.step()?;
     }
@@ -310,7 +310,7 @@ fn pushed(elements: usize, scheme: Scheme, dt: f64, steps: usize) -> Result<[f64
         amplitude: Amplitude::new((0..=100).map(sine).collect())?,
     }];
     model.nonlinear.iteration.tolerance = 1e-12;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }
@@ -376,13 +376,13 @@ fn struck(elements: usize) -> Result<Vec<Row>, Error> {
         discrete: vec![striker],
         ..Model::new(vec![made], mesh, CENTRAL, 1.0)
     };
-    let critical = System::new(Model {
+    let critical = crate::witness::system(Model {
         dt: 1e-12,
         ..model.clone()
     })?
     .critical_step();
     model.dt = 0.9 * critical;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     // a period with the mass at the tip
     let period = std::f64::consts::TAU * (MASS * LENGTH.powi(3) / (3.0 * bending)).sqrt();
     let (mut sum, mut count) = (0.0, 0.0);

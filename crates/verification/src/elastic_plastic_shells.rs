@@ -13,7 +13,7 @@
 //! squares, 1.5e-3 of them at yield: 2e-3 where nothing flows.
 
 use carom_bodies::{Formulation, Kinematics, MassKind, Rotations, ShellSection};
-use carom_dynamics::{Driver, Model, NodalLoad, Preload, PrescribedTurn, System};
+use carom_dynamics::{Driver, Model, NodalLoad, Preload, PrescribedTurn};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_signals::Amplitude;
 
@@ -114,7 +114,7 @@ fn moment(grid: &Grid, formulation: Formulation, ratio: f64) -> Result<f64, Erro
             angle: Amplitude::new(vec![[0.0, 0.0], [1.0, -angle]])?,
         });
     }
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }

@@ -8,7 +8,7 @@
 //! they are not exact, and the trapezoid with the displacement law multiplies what they leave.
 
 use carom_contact::Sliding;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme, State, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme, State};
 
 use crate::Error;
 use crate::battery::is_senseless;
@@ -19,7 +19,7 @@ use crate::features::{Feature, label};
 const STEPS: u64 = 24;
 
 fn run(model: Model) -> Result<State, Error> {
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     while driver.state().step < STEPS {
         driver.step()?;
     }

@@ -8,7 +8,7 @@
 //! Full integration, mean dilatation and one point.
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, Scheme, State, System};
+use carom_dynamics::{Driver, Model, ModelBody, Scheme, State};
 use carom_materials::{Elastic, Law, NeoHooke, Plane};
 use carom_mesh::generate;
 
@@ -44,7 +44,7 @@ fn state(scheme: Scheme, formulation: Formulation) -> Result<State, Error> {
         ..Model::new(vec![ModelBody::new(spec)], mesh, scheme, PHASE / rate)
     };
     model.nonlinear.iteration.tolerance = 1e-13;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let velocity = |x: &[f64; 3]| [STRAIN * speed * (number * x[0]).sin(), 0.0, 0.0];
     let velocity: Vec<f64> = system.x.iter().flat_map(velocity).collect();
     let mut driver = Driver::new(system)?;

@@ -216,7 +216,7 @@ impl Feature {
         };
         if let Some(rotations) = rotations {
             let model = plates(rotations, (scheme, law), refinement)?;
-            return Ok(Built::One(System::new(model)?, None));
+            return Ok(Built::One(crate::witness::system(model)?, None));
         }
         let blocks = self.blocks(refinement);
         let mut model = blocks.model(scheme, law, self.sliding())?;
@@ -256,7 +256,7 @@ impl Feature {
             }
             _ => {}
         }
-        Ok(Built::One(System::new(model)?, None))
+        Ok(Built::One(crate::witness::system(model)?, None))
     }
 }
 
@@ -324,7 +324,7 @@ fn flung(scheme: Scheme, law: Law, refinement: usize) -> Result<Built, Error> {
         integration: Integration::Node,
         dt: 4e-4 / refinement as f64,
     };
-    let system = System::new(pin.model()?)?;
+    let system = crate::witness::system(pin.model()?)?;
     let velocity = pin.fling(&system);
     Ok(Built::One(system, Some(velocity)))
 }

@@ -1,11 +1,12 @@
 //! Histories of a contact, and the figures of merit of bars against the exact solution.
 
-use carom_dynamics::{Driver, Observer, Stepper, System, march};
+use carom_dynamics::{Driver, Observer, Stepper, march};
 
 use crate::Error;
 use crate::bars::Run;
 use crate::check::Row;
 use crate::kind::Kind;
+use crate::witness::{Compared, compare};
 
 /// History of the first contact and of the balance, one entry per step.
 #[derive(Clone, Debug, Default)]
@@ -92,7 +93,7 @@ pub(crate) fn run_stepper(
 
 /// Runs the bars to the end of the run.
 pub(crate) fn drive(run: &Run) -> Result<(Driver, History), Error> {
-    let mut driver = Driver::new(System::new(run.model()?)?)?;
+    let mut driver = Driver::new(crate::witness::system(run.model()?)?)?;
     let mut history = History::default();
     let end = run.end * run.set.duration();
     march(&mut driver, end, &mut [&mut history], &|| false)?;
@@ -140,6 +141,24 @@ fn separation(run: &Run, driver: &dyn Stepper) -> f64 {
 fn force_error(run: &Run, history: &History) -> Result<f64, Error> {
     let (duration, dt) = (run.set.duration(), run.dt());
     let exact = run.exact(run.end.max(1.0) * duration + dt)?;
+    compare(|| Compared {
+        title: format!(
+            "Contact force: {}, {} law, {} elements",
+            run.scheme.get().name(),
+            run.law.get().name(),
+            run.elements
+        ),
+        abscissa: ["time", "s"],
+        ordinate: ["contact force", "N"],
+        x: history.time.clone(),
+        computed: history.force.clone(),
+        reference: {
+            let means = history.time.iter();
+            means
+                .map(|&end| exact.force().mean(end - dt, end))
+                .collect()
+        },
+    });
     let (mut error, mut norm) = (0.0, 0.0);
     for (&end, force) in history.time.iter().zip(&history.force) {
         if end - dt < duration * (1.0 - 1e-12) {

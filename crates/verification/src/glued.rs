@@ -5,7 +5,7 @@ use carom_bodies::{CellWeights, Kinematics};
 use carom_contact::Law;
 use carom_dynamics::{Balance, Costs, Model, ModelBody, ModelLink, ModelTarget, Scheme};
 use carom_mesh::{Mesh, generate};
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::bars::{SLOW, Set};
@@ -149,7 +149,7 @@ impl Glued {
 
     /// Runs to `end` (s): figures of merit.
     pub(crate) fn run_to(&self, end: f64) -> Result<Figures, Error> {
-        let mut zones = Zones::new(&self.zoned()?)?;
+        let mut zones = crate::witness::zones(&self.zoned()?)?;
         if self.joined {
             zones.join()?;
         }

@@ -108,7 +108,7 @@ fn zones(schemes: [Scheme; 2], dt: f64) -> Result<Zones, Error> {
         |body: usize| ModelZone::new(["fine", "coarse"][body], vec![body], (schemes[body], 1));
     let mut nonlinear = Nonlinear::default();
     nonlinear.iteration.tolerance = 1e-12;
-    Ok(Zones::new(&Zoned {
+    Ok(crate::witness::zones(&Zoned {
         zones: vec![zone(0), zone(1)],
         links: vec![ModelLink {
             name: "bar".to_string(),

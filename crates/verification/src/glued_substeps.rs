@@ -11,8 +11,7 @@
 
 use carom_algebra::tensor::Vec3;
 use carom_dynamics::scheme::CentralDifference;
-use carom_dynamics::{Driver, Model, Order, Scheme, System};
-use carom_zones::Zones;
+use carom_dynamics::{Driver, Model, Order, Scheme};
 
 use crate::Error;
 use crate::build::{newmark, theta};
@@ -97,10 +96,10 @@ fn tumble((model, end): Free, time: f64) -> Result<Tumbled, Error> {
         dt: dt / f64::from(SUBSTEPS),
         ..model.clone()
     };
-    let mut driver = Driver::new(System::new(single)?)?;
+    let mut driver = Driver::new(crate::witness::system(single)?)?;
     let v = spin(driver.system(), centre);
     driver.restart(&vec![0.0; v.len()], &v)?;
-    let mut zones = Zones::new(&apart(model, (CONSERVING, SUBSTEPS)))?;
+    let mut zones = crate::witness::zones(&apart(model, (CONSERVING, SUBSTEPS)))?;
     let start = zones.drivers().iter().map(|driver| {
         let v = spin(driver.system(), centre);
         [vec![0.0; v.len()], v]

@@ -11,7 +11,7 @@ use carom_dynamics::{
 };
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
-use carom_zones::{Glued, LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{Glued, LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::{newmark, surface};
@@ -86,7 +86,7 @@ impl TurnedPatch {
         let Elastic { young, .. } = self.material;
         let [length, height, width] = self.size;
         self.load(&mut model, end)?;
-        let mut driver = Driver::new(System::new(model)?)?;
+        let mut driver = Driver::new(crate::witness::system(model)?)?;
         let rest = vec![0.0; driver.system().unknowns()];
         let start = self.turned(driver.system(), 0.0);
         driver.restart(&start, &rest)?;
@@ -105,7 +105,7 @@ impl TurnedPatch {
     /// Largest speed over c ε while a wave runs through the body, in zones that step apart.
     pub(crate) fn run_apart(&self, mut zoned: Zoned, end: &[(u32, f64)]) -> Result<f64, Error> {
         self.load(&mut zoned.model, end)?;
-        let mut zones = Zones::new(&zoned)?;
+        let mut zones = crate::witness::zones(&zoned)?;
         let start = zones.drivers().iter().map(|driver| {
             let u = self.turned(driver.system(), Self::STRAIN);
             let rest = vec![0.0; u.len()];
@@ -240,7 +240,7 @@ pub(crate) fn tumbling(
     centre: Vec3,
     (steps, of_momenta): (usize, f64),
 ) -> Result<Vec<Row>, Error> {
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let v = spin(driver.system(), centre);
     let rest = vec![0.0; v.len()];
     driver.restart(&rest, &v)?;

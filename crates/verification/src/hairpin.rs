@@ -48,7 +48,7 @@ impl Hairpin {
     /// # Errors
     /// A system that is refused.
     pub(crate) fn newton(&self) -> Result<Driver, Error> {
-        let system = System::new(self.model()?)?;
+        let system = crate::witness::system(self.model()?)?;
         let velocity = self.fling(&system);
         let mut newton = Driver::new(system)?;
         newton.restart(&vec![0.0; velocity.len()], &velocity)?;

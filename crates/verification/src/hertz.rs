@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_contact::{Basis, Integration};
-use carom_dynamics::{Amplitude, Driver, Model, Preload, Prescribed, System};
+use carom_dynamics::{Amplitude, Driver, Model, Preload, Prescribed};
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
@@ -12,6 +12,7 @@ use carom_mesh::read::gmsh;
 use crate::Error;
 use crate::build::group;
 use crate::check::Row;
+use crate::witness::{Compared, compare};
 
 /// Material of all bodies.
 pub(crate) const MATERIAL: Elastic = Elastic {
@@ -89,7 +90,7 @@ impl Pressed {
             end: 1.0,
             steps: Self::STEPS,
         });
-        let mut newton = Driver::new(System::new(model)?)?;
+        let mut newton = Driver::new(crate::witness::system(model)?)?;
         for _ in 0..Self::STEPS / 2 {
             newton.step()?;
         }
@@ -110,6 +111,7 @@ impl Pressed {
             mean.l2 += errors.l2.powi(2) / count as f64;
             mean.inside += errors.inside.powi(2) / count as f64;
         }
+        self.show(&exact(self.force()));
         Ok(Errors {
             l2: mean.l2.sqrt(),
             inside: mean.inside.sqrt(),
@@ -167,6 +169,24 @@ impl Pressed {
         }
         errors.l2 = (errors.l2 / whole).sqrt();
         errors
+    }
+
+    /// Shows the present profile over the exact one.
+    fn show<P: Fn(f64) -> f64>(&self, exact: &Exact<P>) {
+        compare(|| {
+            let mut samples: Vec<[f64; 3]> = self.samples().collect();
+            samples.retain(|[distance, _, _]| *distance <= 1.5 * exact.edge);
+            samples.sort_by(|one, other| one[0].total_cmp(&other[0]));
+            let of = |value: &dyn Fn(&[f64; 3]) -> f64| samples.iter().map(value).collect();
+            Compared {
+                title: "Pressure over the distance from the middle".to_owned(),
+                abscissa: ["distance", "m"],
+                ordinate: ["pressure", "Pa"],
+                x: of(&|sample| sample[0]),
+                computed: of(&|sample| sample[1]),
+                reference: of(&|sample| (exact.pressure)(sample[0])),
+            }
+        });
     }
 }
 

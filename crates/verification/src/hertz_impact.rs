@@ -20,7 +20,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
 use carom_exact::hertz::{Collision, reduced_mass};
 use carom_materials::{Law as Material, NeoHooke};
 
@@ -83,7 +83,7 @@ impl Spheres {
 
     fn rows(&self, steps: f64) -> Result<Vec<Row>, Error> {
         let exact = self.exact();
-        let system = System::new(self.model(steps)?)?;
+        let system = crate::witness::system(self.model(steps)?)?;
         let mut run = Driver::new(system)?;
         while run.state().time < 1.1 * exact.duration {
             run.step()?;

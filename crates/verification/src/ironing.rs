@@ -30,7 +30,6 @@ use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
     Amplitude, Driver, Iteration, Model, ModelBody, ModelTarget, Nonlinear, Preload, Prescribed,
-    System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, read};
@@ -115,7 +114,7 @@ fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Re
 fn iron(file: &str, friction: f64, integration: Integration, slides: u64) -> Result<Run, Error> {
     let model = model(file, friction, integration, slides)?;
     let top = model.nonlinear.motions[0].nodes.clone();
-    let mut newton = Driver::new(System::new(model)?)?;
+    let mut newton = Driver::new(crate::witness::system(model)?)?;
     let (mut forces, mut pressed) = (Vec::new(), 0.0);
     let mut iterations = Iterations::default();
     for step in 0..DOWN + slides {

@@ -12,7 +12,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::Law;
-use carom_dynamics::{Driver, Model, Scheme, Solver, System};
+use carom_dynamics::{Driver, Model, Scheme, Solver};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
 
@@ -93,7 +93,7 @@ fn driver(n: usize, fall: &Fall, solver: Solver) -> Result<Driver, Error> {
         ..Model::new(vec![block], mesh, (fall.scheme)(), step)
     };
     model.nonlinear.iteration.solver = solver;
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 /// Rows of one fall, and the products with the matrix in a step.

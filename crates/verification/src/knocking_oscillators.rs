@@ -8,7 +8,7 @@
 //! rounding of its largest part.
 
 use carom_bodies::Curve;
-use carom_dynamics::{Driver, Model, Scheme, System};
+use carom_dynamics::{Driver, Model, Scheme};
 
 use crate::Error;
 use crate::build::{newmark, theta};
@@ -48,8 +48,8 @@ fn model(pair: bool, dashpot: f64, (scheme, dt): (Scheme, f64)) -> Result<Model,
 }
 
 fn rows(name: &str, dashpot: f64, time: (Scheme, f64), steps: usize) -> Result<Vec<Row>, Error> {
-    let mut two = Driver::new(System::new(model(true, dashpot, time)?)?)?;
-    let mut one = Driver::new(System::new(model(false, dashpot, time)?)?)?;
+    let mut two = Driver::new(crate::witness::system(model(true, dashpot, time)?)?)?;
+    let mut one = Driver::new(crate::witness::system(model(false, dashpot, time)?)?)?;
     let (mut apart, mut largest, mut drift) = (0.0_f64, 0.0_f64, 0.0_f64);
     for _ in 0..steps {
         two.step()?;

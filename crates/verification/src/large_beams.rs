@@ -19,7 +19,7 @@ use carom_bodies::{
     Rotations, SectionShape,
 };
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelBody, ModelDiscrete, NodalLoad, Preload, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelDiscrete, NodalLoad, Preload, Scheme};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, generate};
@@ -68,7 +68,7 @@ fn at_rest(
     };
     model.nonlinear.preload = Some(Preload { end: 1.0, steps });
     model.nonlinear.nodal = vec![nodal];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }
@@ -203,7 +203,7 @@ fn spinning(
         ..Model::new(vec![made], mesh, CONSERVING, 2e-3)
     };
     model.nonlinear.iteration.tolerance = TOLERANCE;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut strain = 0.0_f64;
     for _ in 0..steps {
         driver.step()?;
@@ -233,7 +233,7 @@ fn pendulum(elements: usize, steps: usize) -> Result<Vec<Row>, Error> {
         ..Model::new(vec![made], mesh, CONSERVING, 2e-3)
     };
     model.nonlinear.iteration.tolerance = TOLERANCE;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut lowest = 0.0_f64;
     for _ in 0..steps {
         driver.step()?;

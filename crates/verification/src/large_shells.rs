@@ -11,9 +11,7 @@
 
 use carom_bodies::Rotations;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{
-    Driver, Model, ModelBody, Preload, Prescribed, PrescribedTurn, Scheme, System,
-};
+use carom_dynamics::{Driver, Model, ModelBody, Preload, Prescribed, PrescribedTurn, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
 use carom_signals::Amplitude;
@@ -111,7 +109,7 @@ fn roll_up(elements: usize, steps: u64) -> Result<Vec<Row>, Error> {
             angle: Amplitude::new(vec![[0.0, 0.0], [1.0, -std::f64::consts::TAU]])?,
         });
     }
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut rows = Vec::new();
     for step in 1..=steps {
         driver.step()?;
@@ -269,7 +267,7 @@ fn roof(n: usize) -> Result<Vec<Row>, Error> {
         nodes: vec![middle],
         displacement: [None, None, Some(down)],
     });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let largest = ROOF.iter().map(|[_, load]| *load).fold(0.0, f64::max);
     let mut rows = Vec::new();
     for [down, load] in ROOF {
@@ -306,7 +304,7 @@ pub(crate) fn tumbling(
     let scheme = Scheme::EnergyMomentum(EnergyMomentum {});
     let mut model = Model::new(vec![made], mesh, scheme, dt);
     model.nonlinear.iteration.tolerance = TOLERANCE;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut strain = 0.0_f64;
     for _ in 0..steps {
         driver.step()?;

@@ -30,6 +30,7 @@ mod plates;
 mod points;
 mod pounding;
 mod repeated;
+mod witness;
 mod words;
 
 mod adaptive;
@@ -167,6 +168,7 @@ use std::io::{self, Write};
 pub use check::{Check, Expected, Made, Row, Size, Verdict};
 pub use error::Error;
 pub use kind::{Counts, Kind};
+pub use witness::{Compared, Shown};
 
 /// Makes of one list of case modules the registry and one test per case at its quick size.
 macro_rules! registry {
@@ -324,26 +326,28 @@ registry! {
     zones_in_contact
 }
 
-/// Runs all cases, or those whose name contains `filter`, and writes one line per row; returns what each found too.
+/// Runs all cases, or those whose name contains `filter`, and writes one line per row; returns what each found too, and where somebody
+/// `looks` what it has shown.
 ///
 /// # Errors
 /// Only of `out`; a case that cannot be computed is written and counted as failed.
 pub fn verify(
     filter: Option<&str>,
-    size: Size,
+    (size, looks): (Size, bool),
     out: &mut dyn Write,
 ) -> io::Result<(Verdict, Vec<Made>)> {
-    check::verify(&checks(), filter, size, out)
+    check::verify(&checks(), filter, (size, looks), out)
 }
 
-/// What cases found as a page of HTML, with the problem, the reference and the reason for the tolerance of each.
-pub fn page(made: &[Made], verdict: &Verdict) -> String {
+/// What cases found as a page of HTML, with the problem, the reference and the reason for the tolerance of each. `draw`: pictures of what a
+/// case has shown, as SVG.
+pub fn page(made: &[Made], verdict: &Verdict, draw: impl Fn(&Shown) -> Vec<String>) -> String {
     let sources = sources();
     let head = |name: &str| {
         let source = sources.iter().find(|(other, _)| *other == name);
         source.map_or(String::new(), |(_, source)| page::head(source))
     };
-    page::page(made, verdict, head)
+    page::page(made, verdict, head, draw)
 }
 
 #[test]

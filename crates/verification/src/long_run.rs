@@ -10,9 +10,7 @@
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Capture;
 use carom_contact::{Law, Plane};
-use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, System, march,
-};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Support, march};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 
@@ -125,7 +123,7 @@ pub fn bounces(
             0.5 / elements as f64,
         )
     };
-    let Ok(system) = System::new(model) else {
+    let Ok(system) = crate::witness::system(model) else {
         return Ok(None);
     };
     let stretched: Vec<f64> = system.x.iter().map(|x| 0.5 * (1.0 - x[0])).collect();

@@ -13,7 +13,7 @@
 use std::f64::consts::PI;
 
 use carom_bodies::Curve;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark};
@@ -34,7 +34,7 @@ fn rows(name: &str, scheme: Scheme, curve: Curve, steps: f64) -> Result<Vec<Row>
     points.spring(mass, x, curve);
     points.stop((mass, None), x, 0.0, [STOP, 0.0])?;
     let dt = PI / omega / steps;
-    let system = System::new(points.model(scheme, dt))?;
+    let system = crate::witness::system(points.model(scheme, dt))?;
     let mut run = Driver::new(system)?;
     let mut places = vec![[0.0, 0.0]];
     let mut forces = vec![0.0];

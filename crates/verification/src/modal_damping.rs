@@ -46,7 +46,7 @@ fn decay(steps: usize) -> Result<Vec<Row>, Error> {
     // periods of the lowest mode that deforms, in which the highest damped one has some tens
     model.dt = 1.0 / damped[0][0] / steps as f64;
     let dt = model.dt;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let count = RATIOS.len() + 4;
     let part = modes(&system, count, &mut |_, _| {})?.remove(0);
     let mut driver = Driver::new(system.clone())?;
@@ -124,7 +124,7 @@ fn free() -> Result<Vec<Row>, Error> {
             frequency: 2000.0,
         },
     )?;
-    let system = System::new(with_stop(&model, 1e4)?)?;
+    let system = crate::witness::system(with_stop(&model, 1e4)?)?;
     let mut driver = Driver::new(system)?;
     for _ in 0..600 {
         driver.step()?;
@@ -192,7 +192,9 @@ fn against_rayleigh(name: &str, scheme: Scheme, mass: MassKind) -> Result<Vec<Ro
     }];
     let mut runs = Vec::new();
     for model in [&model, &modal] {
-        runs.push(Driver::new(System::new(with_stop(model, 1e5)?)?)?);
+        runs.push(Driver::new(crate::witness::system(with_stop(
+            model, 1e5,
+        )?)?)?);
     }
     let (mut off, mut largest) = (0.0_f64, 0.0_f64);
     for _ in 0..20_000 {

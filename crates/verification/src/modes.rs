@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 use carom_bodies::{
     BeamTheory, Curve, DiscreteKind, DiscreteSpec, Kinematics, Link, MassKind, PointMass,
 };
-use carom_dynamics::{Model, ModelDiscrete, System};
+use carom_dynamics::{Model, ModelDiscrete};
 use carom_elements::Kind;
 use carom_exact::beam::End;
 use carom_materials::Elastic;
@@ -40,7 +40,7 @@ const SOLID: Elastic = Elastic {
 const ALONG: usize = 24;
 
 fn of(model: Model, count: usize) -> Result<Vec<Modes>, Error> {
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     Ok(modes(&system, count, &mut |_, _| {})?)
 }
 

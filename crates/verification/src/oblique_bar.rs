@@ -22,7 +22,7 @@ use std::path::Path;
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, Nonlinear, Scheme, System};
+use carom_dynamics::{Driver, Model, Nonlinear, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::read::read;
 
@@ -100,7 +100,12 @@ struct Impact {
 }
 
 fn strike(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Result<Impact, Error> {
-    let mut newton = Driver::new(System::new(model(size, scheme, law, integration)?)?)?;
+    let mut newton = Driver::new(crate::witness::system(model(
+        size,
+        scheme,
+        law,
+        integration,
+    )?)?)?;
     while newton.state().time < END {
         newton.step()?;
     }

@@ -9,7 +9,7 @@
 //! its stiffness, 1.5 % with 8; 3 %. Momenta: rounding of 10⁴ steps, 1e-10. Energy: central differences keep it to (ω dt)²/4 of the vibration, here 1e-3 of all; 1e-3.
 
 use carom_bodies::{Formulation, MassKind, Rotations};
-use carom_dynamics::{Driver, Model, System};
+use carom_dynamics::{Driver, Model};
 use carom_materials::Elastic;
 
 use crate::Error;
@@ -52,7 +52,12 @@ fn flying(offset: f64, steps: usize) -> Result<Vec<Row>, Error> {
     made.spec.formulation = Formulation::Reduced { hourglass: 0.05 };
     (made.spin, made.velocity) = ([6.0, 4.0, 12.0], [0.3, -0.2, 0.1]);
     let dt = 2e-4;
-    let mut driver = Driver::new(System::new(Model::new(vec![made], mesh, CENTRAL, dt))?)?;
+    let mut driver = Driver::new(crate::witness::system(Model::new(
+        vec![made],
+        mesh,
+        CENTRAL,
+        dt,
+    ))?)?;
     let mut strain = 0.0_f64;
     for _ in 0..steps {
         driver.step()?;

@@ -15,7 +15,7 @@
 use std::f64::consts::TAU;
 
 use carom_contact::{Cylinder, Obstacle, Profile, Side};
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};
@@ -43,7 +43,7 @@ fn orbit(
     let mut points = Points::new(2);
     let mass = points.mass(MASS, [radius, 0.0, 0.0], [[0.0; 3], [0.0, SPEED, 0.0]]);
     points.in_front_of(mass, (obstacle, ROD), spring_stop(STIFFNESS, 0.0)?);
-    let mut driver = Driver::new(System::new(points.model(scheme, dt))?)?;
+    let mut driver = Driver::new(crate::witness::system(points.model(scheme, dt))?)?;
     let force = MASS * SPEED * SPEED / radius;
     let (mut off, mut away, mut spun) = (0.0_f64, 0.0_f64, 0.0_f64);
     let place = |u: &[f64]| [radius + u[0], u[1]];

@@ -8,7 +8,7 @@
 //! smaller.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, Scheme, System, march};
+use carom_dynamics::{Driver, Model, Scheme, march};
 use carom_mesh::generate;
 
 use crate::Error;
@@ -47,7 +47,7 @@ fn model(scheme: Scheme, dt: f64) -> Result<Model, Error> {
 fn error(scheme: Scheme, steps: usize) -> Result<f64, Error> {
     let omega = frequency();
     let dt = std::f64::consts::TAU / omega / steps as f64;
-    let system = System::new(model(scheme, dt)?)?;
+    let system = crate::witness::system(model(scheme, dt)?)?;
     let mode: Vec<f64> = system
         .x
         .iter()

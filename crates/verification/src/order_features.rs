@@ -7,7 +7,7 @@
 //! where terms of the next order are of ω dt = 0.03 for the fastest mode, and halve.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Scheme};
 use carom_materials::{Branch, Law as Material, Maxwell, NeoHooke};
 use carom_mesh::generate;
 
@@ -37,7 +37,7 @@ fn end(scheme: Scheme, material: Material, steps: u64) -> Result<Vec<f64>, Error
         amplitude: Amplitude::new(vec![[0.0, 0.0], [END, 1.0]])?,
     }];
     model.nonlinear.iteration.tolerance = 1e-12;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let velocity: Vec<f64> = system
         .x
         .iter()

@@ -4,6 +4,7 @@
 use std::fmt::Write as _;
 
 use crate::check::{Expected, Made, Row, Verdict, short};
+use crate::witness::Shown;
 
 const STYLE: &str = ":root { color-scheme: light dark; --faint: #6a6a6a; --line: #dddddd; --good: #1b7f4f; --bad: #b3261e; }
 @media screen and (prefers-color-scheme: dark) { :root { --faint: #a0a09c; --line: #34373b; --good: #53c08a; --bad: #f2857c; } }
@@ -12,10 +13,17 @@ h2 { font-size: 1.1rem; margin: 2.2rem 0 .3rem; border-bottom: 1px solid var(--l
 .faint, details { color: var(--faint); font-size: .9rem; } .good { color: var(--good); } .bad { color: var(--bad); }
 .wide { overflow-x: auto; } table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .2rem .9rem .2rem 0; text-align: left; border-bottom: 1px solid var(--line); } td.number { text-align: right; white-space: nowrap; }
-meter { width: 7rem; } ol { columns: 16rem; font-size: .9rem; }";
+meter { width: 7rem; } figure { margin: 0; flex: 1 1 20rem; max-width: 36rem; background: #fff; }
+.pictures { display: flex; flex-wrap: wrap; gap: .7rem; margin: .7rem 0; } figure svg { width: 100%; height: auto; display: block; }
+@media print { h2 { break-after: avoid; } figure, tr { break-inside: avoid; } } ol { columns: 16rem; font-size: .9rem; }";
 
-/// The page as HTML. `head`: the head of the file of a check by its name.
-pub(crate) fn page(made: &[Made], verdict: &Verdict, head: impl Fn(&str) -> String) -> String {
+/// The page as HTML. `head`: the head of the file of a check by its name; `draw`: pictures of what it has shown, as SVG.
+pub(crate) fn page(
+    made: &[Made],
+    verdict: &Verdict,
+    head: impl Fn(&str) -> String,
+    draw: impl Fn(&Shown) -> Vec<String>,
+) -> String {
     let mut html = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -34,7 +42,7 @@ pub(crate) fn page(made: &[Made], verdict: &Verdict, head: impl Fn(&str) -> Stri
     }
     html += "</ol>\n";
     for one in made {
-        section(&mut html, one, &head(one.check.name));
+        section(&mut html, one, &head(one.check.name), &draw(&one.shown));
     }
     html + "</body>\n</html>\n"
 }
@@ -46,7 +54,7 @@ fn mark(made: &Made) -> &'static str {
     }
 }
 
-fn section(html: &mut String, made: &Made, head: &str) {
+fn section(html: &mut String, made: &Made, head: &str, pictures: &[String]) {
     let name = made.check.name;
     let _ = write!(
         html,
@@ -58,6 +66,13 @@ fn section(html: &mut String, made: &Made, head: &str) {
         let _ = writeln!(html, "<p>{}</p>", escaped(paragraph));
     }
     html.push_str("</details>\n");
+    if !pictures.is_empty() {
+        html.push_str("<div class=\"pictures\">\n");
+        for picture in pictures {
+            let _ = writeln!(html, "<figure>{picture}</figure>");
+        }
+        html.push_str("</div>\n");
+    }
     match &made.rows {
         Ok(rows) => table(html, rows),
         Err(error) => {

@@ -15,7 +15,7 @@
 //! that.
 
 use carom_bodies::{BodySpec, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, System};
+use carom_dynamics::{Driver, Model, ModelBody};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{Mesh, generate};
 
@@ -113,7 +113,7 @@ fn rows(given: Bar, elements: usize) -> Result<Vec<Row>, Error> {
         mesh.nodes.iter().position(near).unwrap_or(0)
     });
     let dt = 0.8 * side / elastic;
-    let mut driver = Driver::new(System::new(Model {
+    let mut driver = Driver::new(crate::witness::system(Model {
         supports,
         contacts: vec![wall],
         ..Model::new(vec![bar], mesh, CENTRAL, dt)

@@ -60,7 +60,7 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => (1000, 4000),
             Size::Full => (4000, 20_000),
         };
-        let mut driver = Driver::new(System::new(model(whole as f64 * STEP)?)?)?;
+        let mut driver = Driver::new(crate::witness::system(model(whole as f64 * STEP)?)?)?;
         for _ in 0..whole {
             driver.step()?;
         }
@@ -71,8 +71,8 @@ pub(crate) const CHECK: Check = Check {
         let [one, two] = [pool(1)?, pool(2)?];
         let given = model(steps as f64 * STEP)?;
         let again = given.clone();
-        let system: Arc<System> = one.install(|| System::new(given))?;
-        let second = two.install(|| System::new(again))?;
+        let system: Arc<System> = one.install(|| crate::witness::system(given))?;
+        let second = two.install(|| crate::witness::system(again))?;
         battery.compare(&run(&one, &system, steps)?, &run(&two, &second, steps)?)?;
         let quarters = [1, 2, 3].map(|part| part * steps / 4);
         let places = [1, quarters[0], quarters[1], quarters[2]];

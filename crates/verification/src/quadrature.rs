@@ -14,7 +14,7 @@
 
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law, Plane as Wall, Sliding};
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
 use carom_materials::Plane;
 use carom_mesh::generate;
 
@@ -89,7 +89,7 @@ fn history(
     choice: Choice,
     integration: Integration,
 ) -> Result<(Vec<f64>, Driver), Error> {
-    let mut driver = Driver::new(System::new(tilted(n, choice, integration)?)?)?;
+    let mut driver = Driver::new(crate::witness::system(tilted(n, choice, integration)?)?)?;
     let mut forces = Vec::new();
     for _ in 0..4 * n {
         driver.step()?;
@@ -146,7 +146,7 @@ fn on_the_slope(name: &str, choice: Choice, sizes: [usize; 2]) -> Result<Vec<Row
 fn between_blocks(name: &str, choice: Choice, blocks: Blocks) -> Result<Vec<Row>, Error> {
     let mut model = blocks.model(choice.scheme, choice.law, Sliding::Finite)?;
     model.contacts[0].integration = choice.weak(1.0, 0.2);
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let end = 2.4 / RUBBER.wave_speed(Plane::Full);
     while driver.state().time < end {
         driver.step()?;

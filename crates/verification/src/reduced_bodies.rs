@@ -159,7 +159,7 @@ impl Problem {
 
 /// Forces of the stop, and displacements of the node inside, at the ends of the steps.
 fn run(model: &Model, inside: u32, steps: usize) -> Result<[Vec<f64>; 2], Error> {
-    let system = System::new(model.clone())?;
+    let system = crate::witness::system(model.clone())?;
     let inside = system.number[inside as usize];
     let mut driver = Driver::new(system)?;
     let (mut forces, mut places) = (Vec::new(), Vec::new());
@@ -180,7 +180,7 @@ fn off(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn frequencies(model: &Model, count: usize) -> Result<Vec<f64>, Error> {
-    let system = System::new(model.clone())?;
+    let system = crate::witness::system(model.clone())?;
     let found = modes(&system, count, &mut |_, _| {})?;
     let all = found
         .iter()
@@ -316,7 +316,7 @@ fn free() -> Result<Vec<Row>, Error> {
             ..Keep::default()
         };
         reduce(&mut model, 0, &keep)?;
-        let mut driver = Driver::new(System::new(model)?)?;
+        let mut driver = Driver::new(crate::witness::system(model)?)?;
         for _ in 0..2000 {
             driver.step()?;
         }
@@ -334,7 +334,7 @@ fn free() -> Result<Vec<Row>, Error> {
         ..Keep::default()
     };
     reduce(&mut model, 0, &keep)?;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..100 {
         driver.step()?;
     }
@@ -385,7 +385,7 @@ fn shaken(problem: &Problem) -> Result<Vec<Row>, Error> {
                 };
                 reduce(&mut model, 0, &keep)?;
             }
-            let mut driver = Driver::new(System::new(model)?)?;
+            let mut driver = Driver::new(crate::witness::system(model)?)?;
             for _ in 0..150 {
                 driver.step()?;
             }

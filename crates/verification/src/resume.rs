@@ -57,10 +57,10 @@ pub(crate) const CHECK: Check = Check {
             massless: true,
             ..Run::slow(ELEMENTS)
         };
-        cuts(&mut bars, &System::new(massless.model()?)?, BARS)?;
+        cuts(&mut bars, &crate::witness::system(massless.model()?)?, BARS)?;
         let mut model = FINER.model(massless.scheme, DISPLACEMENT, Sliding::Finite)?;
         model.contacts[0].massless = true;
-        cuts(&mut solids, &System::new(model)?, BLOCKS)?;
+        cuts(&mut solids, &crate::witness::system(model)?, BLOCKS)?;
         let mut rows: Vec<Row> = bars.rows("bars", 4 * combinations);
         rows.extend(solids.rows("blocks", 4 * combinations));
         Ok(rows)

@@ -23,7 +23,7 @@ use carom_algebra::tensor::{Mat3, Vec3};
 use carom_bodies::{Inertia, Kinematics};
 use carom_contact::Law;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelBody, ModelRigid, ModelTarget, Scheme, State, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelRigid, ModelTarget, Scheme, State};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface, generate};
 
@@ -74,7 +74,7 @@ fn corners(mesh: &Mesh, cube: &ModelBody) -> Result<Surface, Error> {
 
 impl Cube {
     fn driver(&self) -> Result<Driver, Error> {
-        Ok(Driver::new(System::new(self.model()?)?)?)
+        Ok(Driver::new(crate::witness::system(self.model()?)?)?)
     }
 
     fn model(&self) -> Result<Model, Error> {
@@ -265,7 +265,7 @@ fn collide(steps: usize) -> Result<(Kept, f64), Error> {
         ..Model::new(vec![cube, block], mesh, scheme, 5e-4)
     };
     model.nonlinear.iteration.tolerance = 1e-13;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let mut kept = Kept::new(driver.system(), driver.state());
     for _ in 0..steps {
         driver.step()?;
@@ -280,7 +280,7 @@ fn cut(cube: &Cube) -> Result<usize, Error> {
     for _ in 0..1600 {
         first.step()?;
     }
-    let system = System::new(cube.model()?)?;
+    let system = crate::witness::system(cube.model()?)?;
     let state = State::from_bytes(&system, &first.state().to_bytes()?)?;
     let mut second = Driver::resume(system, state)?;
     for _ in 0..100 {

@@ -25,6 +25,7 @@ use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 use crate::Error;
 use crate::build::{HALF, NOW, body, contact, support, surface, theta};
 use crate::check::{Check, Row, Size};
+use crate::witness::{Compared, compare};
 
 const STEEL: Elastic = Elastic {
     density: 8000.0,
@@ -140,7 +141,7 @@ impl Hammer {
             ..Model::new(vec![bar, hammer], mesh, theta(0.5), dt)
         };
         let mut driver: Box<dyn Stepper> = match self.substeps {
-            None => Box::new(Driver::new(System::new(model)?)?),
+            None => Box::new(Driver::new(crate::witness::system(model)?)?),
             Some(substeps) => Box::new(whole(model, substeps)?),
         };
         let mut history = Vec::new();
@@ -148,6 +149,19 @@ impl Hammer {
             driver.step()?;
             history.push((driver.state().time, driver.report().contacts[0].force));
         }
+        compare(|| Compared {
+            title: format!("Contact force: {}", self.name),
+            abscissa: ["time", "s"],
+            ordinate: ["contact force", "N"],
+            x: history.iter().map(|(time, _)| *time).collect(),
+            computed: history.iter().map(|(_, force)| *force).collect(),
+            reference: {
+                let means = history.iter();
+                means
+                    .map(|(time, _)| exact.mean([time - dt, *time]))
+                    .collect()
+            },
+        });
         let record = &driver.state().records.contacts[0];
         let ledger = &driver.state().ledger;
         let start = record.first_closing.unwrap_or(f64::NAN);

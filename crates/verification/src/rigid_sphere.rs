@@ -12,7 +12,7 @@
 
 use carom_algebra::rotation::Rotation;
 use carom_bodies::{Inertia, Kinematics};
-use carom_dynamics::{Driver, Model, ModelRigid, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelRigid, ModelTarget};
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
@@ -86,7 +86,7 @@ fn rows(elements: usize, steps: f64) -> Result<Vec<Row>, Error> {
     let primary = surface(&mesh, "sphere.bottom", &sphere)?;
     let touch = contact(secondary, ModelTarget::Surface(primary), NOW);
     let dt = exact.duration / steps;
-    let system = System::new(Model {
+    let system = crate::witness::system(Model {
         contacts: vec![touch],
         supports,
         ..Model::new(vec![ground, sphere], mesh, theta(0.5), dt)

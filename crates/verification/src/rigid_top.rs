@@ -13,7 +13,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_bodies::{Inertia, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelRigid, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelRigid, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::generate;
 
@@ -46,7 +46,7 @@ fn driver(moments: [f64; 3], spin: [f64; 3], scheme: Scheme, dt: f64) -> Result<
     });
     let mut model = Model::new(vec![top], mesh, scheme, dt);
     model.nonlinear.iteration.tolerance = ROUNDING;
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 /// Largest changes over some revolutions about the middle axis, and how often the body has turned over.

@@ -17,10 +17,10 @@ use std::f64::consts::PI;
 
 use carom_bodies::Kinematics;
 use carom_contact::Plane;
-use carom_dynamics::{Driver, Model, ModelBody, ModelLink, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelLink, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones, mortar_rows};
+use carom_zones::{LinkKind, ModelZone, Zoned, mortar_rows};
 
 use crate::Error;
 use crate::build::{CENTRAL, NOW, contact, neo_hooke, newmark, surface, theta, welded};
@@ -105,7 +105,7 @@ impl Ring {
         let mut body = ring_body(&mesh, "sector")?;
         body.spec.cells.extend(&mesh.groups["rest"].elements);
         let dt = self.dt / f64::from(SUBSTEPS);
-        let mut newton = Driver::new(System::new(self.model(mesh, vec![body], dt)?)?)?;
+        let mut newton = Driver::new(crate::witness::system(self.model(mesh, vec![body], dt)?)?)?;
         let mut forces = Vec::new();
         while forces.len() < (self.end / self.dt).round() as usize {
             let mut sum = 0.0;
@@ -139,7 +139,7 @@ impl Ring {
         let zone = |body: usize, scheme, substeps| {
             ModelZone::new(["sector", "rest"][body], vec![body], (scheme, substeps))
         };
-        let mut zones = Zones::new(&Zoned {
+        let mut zones = crate::witness::zones(&Zoned {
             zones: vec![zone(0, theta(THETA), SUBSTEPS), zone(1, self.outer, 1)],
             links,
             kind: LinkKind::PrakashHjelmstad,

@@ -21,7 +21,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::{Adhesion, Damped, Penalty};
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, Scheme, State, System};
+use carom_dynamics::{Driver, Model, Scheme, State};
 use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::Elastic;
 
@@ -130,7 +130,7 @@ fn model(mesh: &'static str, scheme: Scheme, law: Law, dt: f64) -> Result<Model,
 }
 
 fn collide(mesh: &'static str, steps: usize, scheme: Scheme, law: Law) -> Result<Collided, Error> {
-    let mut newton = Driver::new(System::new(model(mesh, scheme, law, STEP)?)?)?;
+    let mut newton = Driver::new(crate::witness::system(model(mesh, scheme, law, STEP)?)?)?;
     let mut kept = Kept::new(newton.system(), newton.state());
     let mut drift = GapDrift {
         range: vec![None; newton.system().points()],
@@ -268,7 +268,7 @@ fn sliding_springs() -> Result<Row, Error> {
     }));
     let made = |parts: f64| -> Result<f64, Error> {
         let model = model("rings/rings-coarse.msh", theta(0.5), law, STEP / parts)?;
-        let mut newton = Driver::new(System::new(model)?)?;
+        let mut newton = Driver::new(crate::witness::system(model)?)?;
         let mut largest = 0.0_f64;
         while newton.state().time < PARTED {
             newton.step()?;

@@ -19,7 +19,7 @@ use std::f64::consts::{PI, TAU};
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, SectionShape};
 use carom_contact::law::{Capture, Displacement, Reading, Restitution, Velocity};
 use carom_contact::{Initial, Law, Plane};
-use carom_dynamics::{Driver, Model, ModelContact, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelContact, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 use carom_signals::Amplitude;
@@ -133,7 +133,7 @@ fn stop(
 }
 
 fn rows(scheme: Scheme, law: Option<Law>, [dt, end]: [f64; 2]) -> Result<Vec<Row>, Error> {
-    let mut driver = Driver::new(System::new(model(scheme, law, dt, end)?)?)?;
+    let mut driver = Driver::new(crate::witness::system(model(scheme, law, dt, end)?)?)?;
     let mut input = 0.0_f64;
     let mut before = 0.0;
     let steps = (end / dt).round() as usize;

@@ -15,7 +15,7 @@
 //! A disc that rolls needs no friction: what central differences leave of it is the round-off of the speeds over what μ N changes in a
 //! step, 1e-16/(3 μ g dt), less than 1e-12; 1e-9 is left to the speeds of the carrying stop.
 
-use carom_dynamics::{Driver, Scheme, Support, System};
+use carom_dynamics::{Driver, Scheme, Support};
 
 use crate::Error;
 use crate::build::{CENTRAL, newmark, theta};
@@ -59,7 +59,7 @@ fn rolling(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
     let (down, along) = (-MASS * GRAVITY / STIFFNESS, [SPEED, 0.0, 0.0]);
     (model.discrete[0].displacement, model.discrete[0].velocity) =
         (Some([0.0, down, 0.0]), Some(along));
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let left = 3.0 * FRICTION * GRAVITY * dt;
     let rate = |v: &[f64]| v[0] + RADIUS * v[2];
     let last = slide(&mut driver, 2.0 * roll, (rate, left))?;
@@ -117,7 +117,7 @@ fn wheels(scheme: Scheme, steps: f64) -> Result<Vec<Row>, Error> {
         fix: [true; 3],
         fix_rotations: [false; 3],
     });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let (u, mut v) = (
         driver.state().motion.u.clone(),
         driver.state().motion.v.clone(),

@@ -12,7 +12,7 @@
 use std::path::Path;
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::{Bar, Contact, Impact, Solution};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::Mesh;
@@ -90,7 +90,7 @@ fn run(model: Model, contact: &Contact) -> Result<(Vec<f64>, f64), Error> {
     let end = model
         .mesh
         .group_nodes(group(&model.mesh, "striker.contact")?)[0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let dof = 3 * driver.system().number[end as usize] as usize;
     let (mut displacements, mut mean) = (Vec::new(), f64::NAN);
     let (mut time, mut u) = (0.0, 0.0);

@@ -9,7 +9,7 @@
 //! the table is a bound. Sizes: quick n = 100, full also 200 and 400.
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, ModelTarget, System};
+use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::{Bar, Impact, constrained_modulus, solve};
 use carom_materials::Elastic;
 use carom_mesh::generate;
@@ -78,7 +78,7 @@ fn rows((elements, errors, mean_error): (usize, [&str; 5], f64)) -> Result<Vec<R
         },
         2e-3,
     )?;
-    let system = System::new(model(elements, young)?)?;
+    let system = crate::witness::system(model(elements, young)?)?;
     let node = system.contacts[0].points[0].node() as usize;
     let mut driver = Driver::new(system)?;
     let (mut rows, mut last) = (Vec::new(), (0.0, 0.0));

@@ -13,7 +13,7 @@
 use carom_bodies::Rotations;
 use carom_contact::Law;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh, Surface};
 
@@ -100,7 +100,7 @@ fn strips(elements: usize) -> Result<[f64; 3], Error> {
     )?;
     let mut model = pair.model(NOW, (theta(0.5), dt));
     model.bodies[0].velocity = [SPEED, 0.0, 0.0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     let steps = 4 * elements;
     let mut impulse = 0.0;
     for _ in 0..steps {
@@ -162,7 +162,7 @@ fn crossing() -> Result<[f64; 2], Error> {
     model.nonlinear.iteration.tolerance = 1e-12;
     model.bodies[0].velocity = [0.0, 0.0, -SPEED];
     model.bodies[1].velocity = [0.0, 0.0, SPEED];
-    let mut both = Driver::new(System::new(model)?)?;
+    let mut both = Driver::new(crate::witness::system(model)?)?;
     // the two nodes of the element of the edge that is crossed
     let alone = shell(&upper, THICKNESS, Rotations::Finite, SOFT)?;
     let mut mesh = upper;
@@ -184,7 +184,7 @@ fn crossing() -> Result<[f64; 2], Error> {
     };
     model.nonlinear.iteration.tolerance = 1e-12;
     model.bodies[0].velocity = [0.0, 0.0, -SPEED];
-    let mut half = Driver::new(System::new(model)?)?;
+    let mut half = Driver::new(crate::witness::system(model)?)?;
     let (mut apart, mut largest) = (0.0_f64, 0.0_f64);
     for _ in 0..100 {
         both.step()?;
@@ -204,7 +204,7 @@ fn askew(steps: usize) -> Result<Vec<Row>, Error> {
     let conserving = Scheme::EnergyMomentum(EnergyMomentum {});
     let mut model = pair.model(NOW, (conserving, 1e-4));
     model.nonlinear.iteration.tolerance = 1e-12;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let spin = [3.0, 5.0, -4.0];
     let mut velocity = vec![0.0; system.unknowns()];
     for (node, x) in system.x.iter().enumerate().filter(|(_, x)| x[2] > 0.0) {

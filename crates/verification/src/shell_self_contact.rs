@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::Rotations;
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface};
 
@@ -89,7 +89,7 @@ impl Hairpin {
             ..Model::new(vec![made], mesh, scheme, self.dt)
         };
         model.nonlinear.iteration.tolerance = 1e-12;
-        let system = System::new(model)?;
+        let system = crate::witness::system(model)?;
         let mut velocity = vec![0.0; system.unknowns()];
         for (node, x) in system.x.iter().enumerate() {
             let lower = usize::from(x[2] < 0.0);

@@ -22,7 +22,6 @@ use carom_bodies::{CellWeights, Kinematics, ShellSection};
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
     Costs, Driver, Model, ModelBody, ModelConstraint, ModelContact, ModelTarget, Solver, Support,
-    System,
 };
 use carom_exact::hertz::{Pair, Solid};
 use carom_materials::Elastic;
@@ -299,7 +298,7 @@ fn impact(plate: Plate, until: f64, dt: f64) -> Result<Impact, Error> {
     };
     // the work that is compared is that of factors
     model.nonlinear.iteration.solver = Solver::Direct;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let unknowns = system.unknowns();
     let mut driver = Driver::new(system)?;
     while driver.state().time < until {

@@ -13,7 +13,7 @@
 
 use carom_algebra::tensor::Vec3;
 use carom_arlequin::Weighting;
-use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme, System};
+use carom_dynamics::{Amplitude, Driver, Load, LoadKind, Model, Order, Preload, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
 
@@ -128,7 +128,7 @@ fn elastica(load: f64, steps: u64) -> Result<[f64; 2], Error> {
     model.nonlinear.preload = Some(Preload { end: 1.0, steps });
     let corner = |x: &[f64; 3]| x[0] == 0.0 && x[2].abs() < 1e-9;
     let tip = strip.of_solid(&model.mesh, &corner)[0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for _ in 0..steps {
         driver.step()?;
     }

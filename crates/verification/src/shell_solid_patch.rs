@@ -22,7 +22,7 @@
 
 use carom_arlequin::{Profile, Row as Coupled, Term, Weighting};
 use carom_dynamics::{
-    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support, System,
+    Amplitude, Driver, Model, ModelConstraint, NodalLoad, Order, Preload, Support,
 };
 use carom_materials::Elastic;
 use carom_mesh::Mesh;
@@ -182,7 +182,7 @@ fn error(patch: Patch, plate: &Plate, change: Change) -> Result<f64, Error> {
     };
     model.nonlinear.nodal = loads(patch, &plate, &mesh);
     model.nonlinear.preload = Some(Preload { end: 1.0, steps: 1 });
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     driver.step()?;
     let system = driver.system();
     let first = plate.first(&mesh) as usize;

@@ -110,7 +110,7 @@ fn deflection(plate: &Plate) -> Result<f64, Error> {
     let middle = plate.grid().row(0).into_iter().map(|node| node + first);
     let off = |node: &u32| (model.mesh.nodes[*node as usize][0] - 0.5 * side).abs();
     let middle = middle.min_by(|a, b| off(a).total_cmp(&off(b)));
-    let mut driver = Driver::new(System::new(model.clone())?)?;
+    let mut driver = Driver::new(crate::witness::system(model.clone())?)?;
     driver.step()?;
     let system = driver.system();
     let number = system.number[middle.unwrap_or(first) as usize];
@@ -121,7 +121,7 @@ fn deflection(plate: &Plate) -> Result<f64, Error> {
 
 /// Frequencies of the clamped plate, ω L² √(ρ h/D).
 fn frequencies(plate: &Plate) -> Result<Vec<Row>, Error> {
-    let system = System::new(clamped(plate)?)?;
+    let system = crate::witness::system(clamped(plate)?)?;
     let found = carom_reduction::modes(&system, CLAMPED.len(), &mut |_, _| ())?;
     let side = 2.0 * plate.width;
     let unit = TAU * side * side * (MATERIAL.density * THICKNESS / bending()).sqrt();

@@ -1,7 +1,7 @@
 //! Meshes, bodies and static stages of shells.
 
 use carom_bodies::{Formulation, Kinematics, MassKind, Rotations, ShellSection};
-use carom_dynamics::{Driver, Model, ModelBody, NodalLoad, Preload, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, NodalLoad, Preload, Support};
 use carom_elements::Kind;
 use carom_materials::Elastic;
 use carom_mesh::{Group, Mesh};
@@ -144,7 +144,7 @@ pub(crate) fn loaded(
     };
     model.nonlinear.preload = Some(Preload { end: 1.0, steps });
     model.nonlinear.nodal = held.loads;
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     for step in 0..steps {
         driver.step()?;
         visit((step + 1) as f64 / steps as f64, &driver);

@@ -14,7 +14,7 @@
 //! Sizes: quick, quadrilaterals in full integration; full, one-point hexahedra as well.
 
 use carom_bodies::{BodySpec, BulkViscosity, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, System};
+use carom_dynamics::{Driver, Model, ModelBody};
 use carom_materials::{Elastic, Law, NeoHooke, Plane};
 use carom_mesh::{Mesh, generate};
 
@@ -105,8 +105,8 @@ fn bar(
         supports,
         ..Model::new(vec![body], mesh, CENTRAL, f64::MIN_POSITIVE)
     };
-    model.dt = 0.4 * System::new(model.clone())?.critical_step();
-    Ok(Driver::new(System::new(model)?)?)
+    model.dt = 0.4 * crate::witness::system(model.clone())?.critical_step();
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 fn show(driver: &Driver) -> Shown {

@@ -17,7 +17,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::{Law, Motion, Obstacle, Plane, Translation};
-use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, State, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelTarget, Scheme, State, Support};
 use carom_elements::Kind;
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;
@@ -128,7 +128,7 @@ impl Rough {
         let foot = surface(&mesh, "block.bottom", &bodies[0])?;
         let mut rubbing = contact(foot, ModelTarget::Rigid(floor), self.law);
         rubbing.friction = self.mu;
-        let system = System::new(Model {
+        let system = crate::witness::system(Model {
             contacts: vec![rubbing],
             supports,
             gravity: self.gravity,

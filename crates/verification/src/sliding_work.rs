@@ -19,7 +19,7 @@ use carom_bodies::Kinematics;
 use carom_contact::law::{Capture, Restitution};
 use carom_contact::{Cylinder, Integration, Law, Side};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper, System};
+use carom_dynamics::{Driver, Model, ModelTarget, Scheme, Stepper};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};
 
@@ -239,7 +239,7 @@ impl Slide {
     }
 
     fn find(&self, steps: usize) -> Result<Found, Error> {
-        let system = System::new(self.model()?)?;
+        let system = crate::witness::system(self.model()?)?;
         let weight = SOFT.density * HEIGHT * GRAVITY;
         let linear = self.mu == 0.0 && !self.scheme.get().is_between();
         let mut run: Box<dyn Stepper> = match linear {

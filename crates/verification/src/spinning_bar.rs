@@ -12,7 +12,7 @@
 
 use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Iteration, Model, ModelBody, Scheme, System};
+use carom_dynamics::{Driver, Iteration, Model, ModelBody, Scheme};
 use carom_materials::{Elastic, Law, NeoHooke};
 use carom_mesh::generate;
 
@@ -51,7 +51,7 @@ fn newton(scheme: Scheme, tolerance: f64) -> Result<Driver, Error> {
         1.0 / STEPS as f64,
     );
     model.nonlinear.iteration.tolerance = tolerance;
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let spin = |node: &[f64; 3]| [-SPIN * node[1], SPIN * node[0]];
     let velocity: Vec<f64> = system.x.iter().flat_map(spin).collect();
     let mut newton = Driver::new(system)?;

@@ -11,7 +11,7 @@
 use std::f64::consts::PI;
 
 use carom_bodies::Kinematics;
-use carom_dynamics::{Driver, Model, System};
+use carom_dynamics::{Driver, Model};
 use carom_materials::Elastic;
 use carom_mesh::generate;
 
@@ -52,8 +52,8 @@ fn driver(spin: f64) -> Result<Driver, Error> {
         gravity: [0.0, -GRAVITY, 0.0],
         ..Model::new(vec![body], mesh, CENTRAL, 1e-6)
     };
-    model.dt = 0.5 * System::new(model.clone())?.critical_step();
-    Ok(Driver::new(System::new(model)?)?)
+    model.dt = 0.5 * crate::witness::system(model.clone())?.critical_step();
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 fn rows() -> Result<Vec<Row>, Error> {

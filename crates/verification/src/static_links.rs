@@ -11,7 +11,7 @@
 //! tolerance of the iterations.
 
 use carom_bodies::{BeamSection, BeamTheory, Kinematics, MassKind, Rotations, SectionShape};
-use carom_dynamics::{Driver, Model, ModelBody, ModelConstraint, Order, Preload, Scheme, System};
+use carom_dynamics::{Driver, Model, ModelBody, ModelConstraint, Order, Preload, Scheme};
 use carom_mesh::{Mesh, generate};
 
 use crate::Error;
@@ -67,7 +67,7 @@ fn cantilever(
         end: 1e-3,
         steps: 2,
     });
-    Ok(Driver::new(System::new(model)?)?)
+    Ok(Driver::new(crate::witness::system(model)?)?)
 }
 
 fn tip(driver: &Driver, elements: usize, order: Order) -> f64 {

@@ -6,7 +6,7 @@
 //! Tolerance: 1e-11 of the largest energy and of the largest momentum, round-off.
 
 use carom_contact::law::Level;
-use carom_dynamics::{Driver, Scheme, System, march};
+use carom_dynamics::{Driver, Scheme, march};
 
 use crate::Error;
 use crate::bars::{Run, SLOW};
@@ -27,7 +27,7 @@ fn rows(scheme: Scheme, end: &str) -> Result<[Row; 3], Error> {
     let held = support(&model.mesh, end, [true, false, false])?;
     model.supports.push(held);
     model.gravity = [1e3, 0.0, 0.0];
-    let mut driver = Driver::new(System::new(model)?)?;
+    let mut driver = Driver::new(crate::witness::system(model)?)?;
     march(&mut driver, SLOW.duration(), &mut [], &|| false)?;
     let ledger = &driver.state().ledger;
     let row = |what: &str| format!("{scheme:?}, {end}: {what}");

@@ -11,7 +11,7 @@
 use std::f64::consts::TAU;
 
 use carom_bodies::Curve;
-use carom_dynamics::{Driver, System};
+use carom_dynamics::Driver;
 use carom_signals::{Record, Synthetic};
 
 use crate::Error;
@@ -56,7 +56,7 @@ fn response(record: &Record, [frequency, target]: [f64; 2]) -> Result<f64, Error
     let dt = STEP / (200.0 * STEP * frequency).max(20.0).ceil();
     let mut model = points.model(newmark(0.25, 0.5), dt);
     model.nonlinear.base[0] = Some(record.acceleration());
-    let system = System::new(model)?;
+    let system = crate::witness::system(model)?;
     let mut run = Driver::new(system)?;
     let mut most = 0.0_f64;
     while run.state().time < 12.0 + 1.0 / frequency {

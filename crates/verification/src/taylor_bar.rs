@@ -24,7 +24,7 @@
 use std::path::Path;
 
 use carom_bodies::{BodySpec, Formulation, Kinematics};
-use carom_dynamics::{Driver, Model, ModelBody, Scheme, Support, System};
+use carom_dynamics::{Driver, Model, ModelBody, Scheme, Support};
 use carom_materials::{Elastic, J2Plasticity, Law};
 use carom_mesh::{Mesh, generate, read};
 
@@ -110,7 +110,7 @@ impl Bar {
         let wall = contact(surface(&mesh, foot, &body)?, plane(axis, 1.0), HALF);
         let nodes = |name: &str| Ok::<_, Error>(mesh.group_nodes(group(&mesh, name)?));
         let (foot, top) = (nodes(foot)?, nodes(top)?);
-        let system = System::new(Model {
+        let system = crate::witness::system(Model {
             supports,
             contacts: vec![wall],
             ..Model::new(vec![body], mesh, scheme, dt)

@@ -47,7 +47,7 @@ pub(crate) const CHECK: Check = Check {
                 let model = BLOCKS.model(scheme, law, Sliding::Finite)?;
                 let again = model.clone();
                 if let Some(system) = one.install(|| battery.system(model))? {
-                    let second = two.install(|| System::new(again))?;
+                    let second = two.install(|| crate::witness::system(again))?;
                     let states = [run(&one, &system, steps)?, run(&two, &second, steps)?];
                     battery.compare(&states[0], &states[1])?;
                 }

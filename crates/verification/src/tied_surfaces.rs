@@ -77,7 +77,7 @@ fn bar(tied: bool, law: Law, scheme: Scheme) -> Result<Arc<System>, Error> {
         constraints.push(ModelConstraint::of_rows("tie", &rows.rows, mesh.dim));
     }
     let dt = COURANT / ALONG as f64 / RUBBER.wave_speed(Plane::Uniaxial);
-    Ok(System::new(Model {
+    Ok(crate::witness::system(Model {
         constraints,
         ..Model::new(bodies, mesh, scheme, dt)
     })?)

@@ -12,7 +12,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Scheme, System};
+use carom_dynamics::{Driver, Scheme};
 use carom_materials::Elastic;
 
 use crate::build::NOW;
@@ -47,7 +47,7 @@ pub(crate) const CHECK: Check = Check {
             depth: 5.0,
         };
         let model = tori.model(Scheme::EnergyMomentum(EnergyMomentum {}), NOW, 0.05)?;
-        let mut newton = Driver::new(System::new(model)?)?;
+        let mut newton = Driver::new(crate::witness::system(model)?)?;
         let mut kept = Kept::new(newton.system(), newton.state());
         let energy = newton.state().ledger.initial.energy();
         let (mut closed, mut strained, mut attempts) = (0, 0.0_f64, 0);

@@ -6,7 +6,7 @@ use carom_arlequin::Row as Coupled;
 use carom_dynamics::{Model, ModelBody, ModelLink, Scheme, System};
 use carom_exact::beam::Beam;
 use carom_mesh::Mesh;
-use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
+use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::Error;
 use crate::build::newmark;
@@ -154,7 +154,7 @@ pub(crate) fn cross(
     start: &dyn Fn(&System) -> [Vec<f64>; 2],
     time: f64,
 ) -> Result<Crossing, Error> {
-    let mut zones = Zones::new(zoned)?;
+    let mut zones = crate::witness::zones(zoned)?;
     let rest = zones.drivers()[0].system().unknowns();
     let moving = start(zones.drivers()[1].system());
     zones.restart(&[[vec![0.0; rest], vec![0.0; rest]], moving])?;

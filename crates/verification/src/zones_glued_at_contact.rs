@@ -45,7 +45,7 @@ pub(crate) const CHECK: Check = Check {
     run: |_| {
         let (mut rows, mut taken) = (Vec::new(), 0);
         for (name, problem) in problems() {
-            let single = match System::new(single(problem.zoned()?.model)) {
+            let single = match crate::witness::system(single(problem.zoned()?.model)) {
                 Ok(system) => history(Driver::new(system)?)?,
                 Err(error) => {
                     let error = Error::System(error);
@@ -150,7 +150,9 @@ impl Problem {
     }
 
     fn single_history(&self) -> Result<Vec<[f64; 2]>, Error> {
-        history(Driver::new(System::new(single(self.zoned()?.model))?)?)
+        history(Driver::new(crate::witness::system(single(
+            self.zoned()?.model,
+        ))?)?)
     }
 
     /// Two bars of half the section in each other.

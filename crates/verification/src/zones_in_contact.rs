@@ -109,7 +109,7 @@ fn adaptive(name: &str, schemes: [Scheme; 2]) -> Result<Vec<Row>, Error> {
     });
     let zoned = zoned(model.clone(), schemes, 4);
     let mut whole = Whole::new(&zoned, System::whole(model.clone())?)?;
-    let mut single = Driver::new(System::new(model)?)?;
+    let mut single = Driver::new(crate::witness::system(model)?)?;
     let (history, figures) = run_stepper(&case, &mut whole)?;
     run_stepper(&case, &mut single)?;
     let record = |state: &State| state.records.contacts[0].clone();

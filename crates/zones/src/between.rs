@@ -97,6 +97,13 @@ pub(crate) struct Between {
 }
 
 impl Between {
+    /// Whether a state is of these contacts.
+    pub(crate) fn has_state(&self, state: &BetweenState) -> bool {
+        state.interface.is_of(self.system.points())
+            && state.records.are_of(&self.system)
+            && state.works.len() == self.state.works.len()
+    }
+
     /// `None` where no contact is between zones.
     ///
     /// # Errors

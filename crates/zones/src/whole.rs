@@ -75,6 +75,11 @@ impl Whole {
                 rows[0], rows[1]
             )));
         }
+        let contacts = system.contacts.len();
+        let mut impacts = saved.impacts.iter();
+        if !zones.has_state(&saved.zones) || !impacts.all(|i| (i.contact as usize) < contacts) {
+            return Err(refused("it belongs to another model".to_owned()));
+        }
         for (state, driver) in saved.zones.zones.iter().zip(&zones.drivers) {
             state.check(driver.system())?;
         }

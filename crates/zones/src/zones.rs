@@ -215,6 +215,35 @@ impl Zones {
         }
     }
 
+    /// Whether a state is of these zones, in the length of each array.
+    pub(crate) fn has_state(&self, state: &ZonesState) -> bool {
+        let own = self.state();
+        let lengths = |state: &ZonesState| {
+            let earlier = state.earlier.iter().map(Vec::len);
+            let forces = state.forces.iter().map(Vec::len);
+            let all: Vec<usize> = earlier.chain(forces).collect();
+            let others = [
+                state.multipliers.len(),
+                state.missed.len(),
+                state.link_works.len(),
+                state.zones.len(),
+            ];
+            (all, others)
+        };
+        let origins = state.origins.iter().zip(&own.origins);
+        let between = match (&state.between, &self.between) {
+            (Some(state), Some(own)) => own.has_state(state),
+            (None, None) => true,
+            _ => false,
+        };
+        lengths(state) == lengths(&own)
+            && state.time.is_finite()
+            && state.time >= 0.0
+            && state.origins.len() == own.origins.len()
+            && origins.into_iter().all(|(one, other)| one.is_like(other))
+            && between
+    }
+
     /// Goes on from a state, which must be of the same zones.
     pub fn resume(&mut self, state: &ZonesState) {
         (self.step, self.time, self.all_passes) = (state.step, state.time, state.passes);

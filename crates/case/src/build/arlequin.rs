@@ -40,7 +40,7 @@ pub(super) struct Joints {
     pub(super) links: Vec<ModelLink>,
     pub(super) overlaps: Vec<BuiltOverlap>,
     /// Cells in an overlap, and which.
-    inside: BTreeMap<ElementId, usize>,
+    pub(super) inside: BTreeMap<ElementId, usize>,
 }
 
 impl Builder<'_> {

@@ -98,6 +98,7 @@ impl Builder<'_> {
                 },
                 depth: contact.depth.map(|depth| depth.0),
                 near_only: false,
+                parts: None,
                 moment_about,
                 merge_within: contact.merge_within.map(|time| time.0),
             });

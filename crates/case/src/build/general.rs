@@ -1,26 +1,32 @@
 //! General contact: the outer sides of all bodies, each with each other and with itself.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use carom_bodies::{Kinematics, Rotations, height};
-use carom_contact::{Initial, Integration, Sliding};
+use carom_contact::{Initial, Integration, Parts, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
 use carom_mesh::{ElementId, Face, Group, Mesh, Surface};
 
 use super::Builder;
+use super::arlequin::Joints;
 use super::contacts::{has_quadratic_faces, mortar};
 use super::laws::sides;
+use super::plan::Plan;
 use super::shells::around_shells;
-use super::zones::body_of;
 use crate::error::Problem;
-use crate::schema::{Basis, Friction, GeneralContact, GivenLaw};
+use crate::schema::{Basis, Friction, GeneralBy, GeneralContact, GivenLaw};
 
 /// Contacts from which on a warning says that they are many: each looks for its points in each step.
 const MANY: usize = 100;
 
-/// A body that takes part.
+/// A body that takes part, or several that one contact takes together.
 struct Part<'a> {
+    /// Of several the first.
     body: &'a ModelBody,
+    /// Their numbers, ascending.
+    bodies: Vec<usize>,
+    /// What its contacts are called by.
+    name: String,
     material: String,
     surface: Surface,
     /// Least thickness of the cells at its outer sides, m.
@@ -29,7 +35,40 @@ struct Part<'a> {
     length: f64,
 }
 
-impl Part<'_> {
+/// What is in no contact with each other.
+struct Apart {
+    /// The body of each cell.
+    owners: BTreeMap<ElementId, usize>,
+    /// Pairs of bodies that something else joins, ascending.
+    joined: BTreeSet<[usize; 2]>,
+    /// Pairs of bodies that share nodes of their outer sides, ascending.
+    shared: BTreeSet<[usize; 2]>,
+}
+
+impl<'a> Part<'a> {
+    fn new(
+        mesh: &Mesh,
+        (body, material): (&'a ModelBody, String),
+        bodies: Vec<usize>,
+        surface: Surface,
+    ) -> Part<'a> {
+        let faces = &surface.faces;
+        let thickness = |face: &Face| match face.radius {
+            Some(radius) => 2.0 * radius,
+            None => height(mesh, face.parent, face.kind, face.corners()),
+        };
+        let lengths: f64 = faces.iter().map(|face| face.length(&mesh.nodes)).sum();
+        Part {
+            body,
+            bodies,
+            name: body.spec.name.clone(),
+            material,
+            thickness: faces.iter().map(thickness).fold(f64::INFINITY, f64::min),
+            length: lengths / faces.len() as f64,
+            surface,
+        }
+    }
+
     /// Whether the surface is around axes of beams or middles of shells.
     fn is_round(&self) -> bool {
         self.surface.faces.iter().any(Face::is_round)
@@ -38,49 +77,182 @@ impl Part<'_> {
     fn is_axis(&self) -> bool {
         matches!(self.body.spec.kinematics, Kinematics::Beam(_))
     }
+
+    /// Whether one contact takes the bodies of both.
+    fn goes_with(&self, other: &Part, plan: &Plan) -> bool {
+        let [one, two] = [self, other].map(|part| &part.body.spec);
+        let zones = [self, other].map(|part| plan.zone_of(part.bodies[0]));
+        self.material == other.material
+            && one.kinematics == two.kinematics
+            && zones[0] == zones[1]
+            && one.deletion.is_none()
+            && two.deletion.is_none()
+    }
 }
 
 impl Builder<'_> {
-    /// The contacts of the general contact; `named`: the others, whose pairs of bodies it leaves out. `of`: cells of each body.
+    /// The contacts of the general contact; `named` and `joints`: what joins bodies besides, whose pairs it leaves out. `of`: cells of each body.
     pub(super) fn general_contact(
         &mut self,
         mesh: &Mesh,
         (bodies, of): (&[ModelBody], &[Vec<ElementId>]),
-        named: &[ModelContact],
+        (named, joints): (&[ModelContact], &Joints),
     ) -> Vec<ModelContact> {
         let case = self.case;
         let Some(given) = &case.general_contact else {
             return Vec::new();
         };
-        if !self.plan.zones.is_empty() {
-            let message = "a general contact is not available in zones, whose overlapping bodies would touch each other";
-            let problem = Problem::new("general-contact", message);
-            self.problems
-                .push(problem.accepted(["`[contact]` for each pair", "no zones"]));
-            return Vec::new();
-        }
         self.check_pairs(given);
-        let parts = self.parts(mesh, bodies);
-        let joined: BTreeSet<[usize; 2]> = named
-            .iter()
-            .filter_map(|contact| pair_of(contact, of))
-            .collect();
+        let mut parts = self.parts(mesh, bodies, joints);
+        let apart = self.kept_apart(mesh, (of, named), &parts);
+        if given.by == GeneralBy::Materials {
+            parts = self.by_materials(mesh, (bodies, joints), parts);
+        }
         let mut contacts = Vec::new();
-        for (k, (first, one)) in parts.iter().enumerate() {
-            for (second, other) in &parts[k..] {
-                if joined.contains(&[*first, *second]) {
-                    continue;
-                }
-                contacts.extend(self.between(mesh, (bodies, of), (given, one, other)));
+        for (k, one) in parts.iter().enumerate() {
+            for other in &parts[k..] {
+                contacts.extend(self.between(mesh, (bodies, of), (given, one, other), &apart));
             }
         }
         if contacts.len() > MANY {
             self.warnings.push(format!(
-                "general-contact: {} pairs of bodies, each with a search of its own; name the contacts that can happen",
+                "general-contact: {} contacts, each with a search of its own; by = \"materials\" makes one of all bodies of two materials",
                 contacts.len()
             ));
         }
         contacts
+    }
+
+    /// What is in no contact with each other.
+    fn kept_apart(
+        &self,
+        mesh: &Mesh,
+        (of, named): (&[Vec<ElementId>], &[ModelContact]),
+        parts: &[Part],
+    ) -> Apart {
+        let cells = of.iter().enumerate();
+        let owners: BTreeMap<ElementId, usize> = cells
+            .flat_map(|(body, cells)| cells.iter().map(move |&cell| (cell, body)))
+            .collect();
+        let mut nodes: Vec<(u32, usize)> = parts
+            .iter()
+            .flat_map(|part| {
+                part.surface
+                    .nodes
+                    .iter()
+                    .map(|&node| (node, part.bodies[0]))
+            })
+            .collect();
+        nodes.sort_unstable();
+        let mut shared = BTreeSet::new();
+        for all in nodes.chunk_by(|one, other| one.0 == other.0) {
+            for (k, (_, one)) in all.iter().enumerate() {
+                shared.extend(all[k + 1..].iter().map(|(_, other)| [*one, *other]));
+            }
+        }
+        let mut joined = BTreeSet::new();
+        let mut join = |one: &BTreeSet<usize>, other: &BTreeSet<usize>| {
+            for &a in one {
+                joined.extend(other.iter().map(|&b| [a.min(b), a.max(b)]));
+            }
+        };
+        for contact in named {
+            if let ModelTarget::Surface(primary) = &contact.primary {
+                let of = |surface: &Surface| {
+                    let faces = surface.faces.iter();
+                    faces
+                        .filter_map(|face| owners.get(&face.parent).copied())
+                        .collect()
+                };
+                join(&of(&contact.secondary), &of(primary));
+            }
+        }
+        let with = |group: &String| -> BTreeSet<usize> {
+            let group = mesh.groups.get(group);
+            let of_group = group
+                .map(|group| mesh.group_nodes(group))
+                .unwrap_or_default();
+            let known = of_group.iter().flat_map(|node| {
+                let first = nodes.partition_point(|(other, _)| other < node);
+                nodes[first..]
+                    .iter()
+                    .take_while(move |(other, _)| other == node)
+            });
+            known.map(|(_, body)| *body).collect()
+        };
+        for (_, given) in self.case.transition.iter() {
+            match (&given.surfaces, &given.end, &given.face) {
+                (Some([one, other]), _, _) | (None, Some(one), Some(other)) => {
+                    join(&with(one), &with(other));
+                }
+                _ => {}
+            }
+        }
+        let body = |name: &String| -> BTreeSet<usize> {
+            let place = self.case.body.names().position(|one| one == name);
+            place.into_iter().collect()
+        };
+        for (_, given) in self.case.arlequin.iter() {
+            join(&body(&given.inner), &body(&given.outer));
+        }
+        for (_, given) in self.case.interface.iter() {
+            join(&body(&given.inner), &body(&given.outer));
+        }
+        Apart {
+            owners,
+            joined,
+            shared,
+        }
+    }
+
+    /// Puts bodies together that one contact takes: of one material, one section and one zone.
+    fn by_materials<'a>(
+        &mut self,
+        mesh: &Mesh,
+        (bodies, joints): (&[ModelBody], &Joints),
+        parts: Vec<Part<'a>>,
+    ) -> Vec<Part<'a>> {
+        let mut together: Vec<Vec<Part>> = Vec::new();
+        for part in parts {
+            let mut known = together.iter_mut();
+            match known.find(|others| others[0].goes_with(&part, &self.plan)) {
+                Some(others) => others.push(part),
+                None => together.push(vec![part]),
+            }
+        }
+        let mut used: BTreeMap<String, usize> = BTreeMap::new();
+        let mut merged = Vec::new();
+        for mut others in together {
+            let (body, material) = (others[0].body, others[0].material.clone());
+            let count = used.entry(material.clone()).or_default();
+            *count += 1;
+            let name = match count {
+                1 => material.clone(),
+                _ => format!("{material}-{count}"),
+            };
+            let one = match others.len() {
+                1 => others.remove(0),
+                _ => {
+                    let numbers: Vec<usize> = others.iter().map(|part| part.bodies[0]).collect();
+                    let cells = numbers.iter().flat_map(|&body| &bodies[body].spec.cells);
+                    let mut cells: Vec<ElementId> = cells.copied().collect();
+                    cells.sort_unstable();
+                    // bodies that share nodes have no outer side between them
+                    let whole = outer_side(mesh, bodies, (body.spec.kinematics, &cells));
+                    match whole.and_then(|whole| outside(whole, joints)) {
+                        Ok(surface) => Part::new(mesh, (body, material), numbers, surface),
+                        Err(cause) => {
+                            self.warnings.push(format!(
+                                "general-contact: the bodies of `{material}` take no part: {cause}"
+                            ));
+                            continue;
+                        }
+                    }
+                }
+            };
+            merged.push(Part { name, ..one });
+        }
+        merged
     }
 
     /// Refuses pairs of materials that are none, or that are given twice.
@@ -106,13 +278,20 @@ impl Builder<'_> {
     }
 
     /// Bodies with an outer side; a warning names the others.
-    fn parts<'a>(&mut self, mesh: &Mesh, bodies: &'a [ModelBody]) -> Vec<(usize, Part<'a>)> {
+    fn parts<'a>(
+        &mut self,
+        mesh: &Mesh,
+        bodies: &'a [ModelBody],
+        joints: &Joints,
+    ) -> Vec<Part<'a>> {
         let mut parts = Vec::new();
         for (number, body) in bodies.iter().enumerate() {
             let name = &body.spec.name;
             let given = self.case.body.get(name);
             let material = given.map(|given| given.material.to_string());
-            let (material, surface) = match (material, outer_side(mesh, bodies, body)) {
+            let side = outer_side(mesh, bodies, (body.spec.kinematics, &body.spec.cells));
+            let side = side.and_then(|side| outside(side, joints));
+            let (material, surface) = match (material, side) {
                 (Some(material), Ok(surface)) => (material, surface),
                 (_, cause) => {
                     let cause = cause.err().unwrap_or("no material");
@@ -122,41 +301,34 @@ impl Builder<'_> {
                     continue;
                 }
             };
-            let faces = &surface.faces;
-            let thickness = |face: &Face| match face.radius {
-                Some(radius) => 2.0 * radius,
-                None => height(mesh, face.parent, face.kind, face.corners()),
-            };
-            let lengths: f64 = faces.iter().map(|face| face.length(&mesh.nodes)).sum();
-            let part = Part {
-                body,
-                material,
-                thickness: faces.iter().map(thickness).fold(f64::INFINITY, f64::min),
-                length: lengths / faces.len() as f64,
-                surface,
-            };
-            parts.push((number, part));
+            parts.push(Part::new(mesh, (body, material), vec![number], surface));
         }
         parts
     }
 
-    /// The contact between two bodies, or of a body with itself where it can fold; none between bodies that share nodes.
+    /// The contact between two bodies, or of a body with itself where it can fold; none between bodies that share nodes or that something
+    /// else joins. Of several bodies on a side those that do not touch are left out by pairs.
     fn between(
         &mut self,
         mesh: &Mesh,
         (bodies, of): (&[ModelBody], &[Vec<ElementId>]),
         (given, one, other): (&GeneralContact, &Part, &Part),
+        apart: &Apart,
     ) -> Option<ModelContact> {
-        let [first, second] = [one, other].map(|part| part.body.spec.name.as_str());
-        let itself = first == second;
-        if itself && !folds(one.body) {
-            return None;
-        }
-        if !itself && shares_nodes(&one.surface, &other.surface) {
-            self.warnings.push(format!(
-                "general-contact: bodies `{first}` and `{second}` share nodes and have no contact with each other"
-            ));
-            return None;
+        let [first, second] = [one, other].map(|part| part.name.as_str());
+        let itself = one.bodies == other.bodies;
+        let many = one.bodies.len() + other.bodies.len() > 2;
+        if !many {
+            let pair = [one.bodies[0], other.bodies[0]];
+            if apart.joined.contains(&pair) || itself && !folds(one.body) {
+                return None;
+            }
+            if apart.shared.contains(&pair) {
+                self.warnings.push(format!(
+                    "general-contact: bodies `{first}` and `{second}` share nodes and have no contact with each other"
+                ));
+                return None;
+            }
         }
         let name = match itself {
             true => format!("all-{first}"),
@@ -187,7 +359,9 @@ impl Builder<'_> {
         let deletes = [one, other]
             .iter()
             .any(|part| part.body.spec.deletion.is_some());
+        let parts = many.then(|| apart.parts((secondary, primary), |body| folds(&bodies[body])));
         Some(ModelContact {
+            parts,
             sliding: Sliding::Finite,
             integration: match quadratic && !round {
                 true => mortar(Basis::default()),
@@ -213,15 +387,14 @@ impl Builder<'_> {
 fn outer_side(
     mesh: &Mesh,
     bodies: &[ModelBody],
-    body: &ModelBody,
+    (kinematics, cells): (Kinematics, &[ElementId]),
 ) -> Result<Surface, &'static str> {
-    let cells = &body.spec.cells;
     let none = Err("it has no outer sides");
     let group = |dim: usize| Group {
         dim,
-        elements: cells.clone(),
+        elements: cells.to_vec(),
     };
-    match body.spec.kinematics {
+    match kinematics {
         _ if mesh.dim == 1 => none,
         Kinematics::Bar { .. } => none,
         Kinematics::Shell(_) => around_shells(mesh, bodies, &group(2)).map_or(none, Ok),
@@ -235,6 +408,70 @@ fn outer_side(
             _ => Err("the section of its beams has no `radius`"),
         },
         _ => Ok(Surface::outer(mesh, cells)),
+    }
+}
+
+/// The faces of an outer side whose cells are in no overlap.
+///
+/// # Errors
+/// Where all are.
+fn outside(side: Surface, joints: &Joints) -> Result<Surface, &'static str> {
+    let is_out = |face: &Face| !joints.inside.contains_key(&face.parent);
+    if side.faces.iter().all(is_out) {
+        return Ok(side);
+    }
+    let faces: Vec<Face> = side.faces.into_iter().filter(is_out).collect();
+    match faces.is_empty() {
+        true => Err("all its outer sides are in an overlap"),
+        false => Ok(Surface::of_faces(faces)),
+    }
+}
+
+impl Apart {
+    /// The parts of a contact whose sides have several bodies. `folds`: whether a body may touch itself.
+    fn parts(&self, (secondary, primary): (&Part, &Part), folds: impl Fn(usize) -> bool) -> Parts {
+        let of = |part: &Part| -> Vec<u32> {
+            let faces = part.surface.faces.iter();
+            faces
+                .map(|face| {
+                    self.owners
+                        .get(&face.parent)
+                        .map_or(u32::MAX, |&body| body as u32)
+                })
+                .collect()
+        };
+        let itself = secondary.bodies == primary.bodies;
+        let has = |body: &usize| {
+            [secondary, primary]
+                .iter()
+                .any(|part| part.bodies.binary_search(body).is_ok())
+        };
+        let of_both = |pair: &&[usize; 2]| pair.iter().all(has);
+        let mut apart: BTreeSet<[u32; 2]> = BTreeSet::new();
+        let mut leave_out = |pair: [usize; 2]| {
+            apart.insert(pair.map(|body| body as u32));
+        };
+        self.joined
+            .iter()
+            .filter(of_both)
+            .for_each(|pair| leave_out(*pair));
+        match itself {
+            // the sides between bodies that share nodes are no outer sides
+            true => {
+                let still = secondary.bodies.iter().filter(|&&body| !folds(body));
+                still.for_each(|&body| leave_out([body; 2]));
+            }
+            false => self
+                .shared
+                .iter()
+                .filter(of_both)
+                .for_each(|pair| leave_out(*pair)),
+        }
+        Parts {
+            secondary: of(secondary),
+            primary: of(primary),
+            apart,
+        }
     }
 }
 
@@ -262,19 +499,4 @@ fn sorted(names: &[String; 2]) -> [String; 2] {
     let mut names = names.clone();
     names.sort();
     names
-}
-
-/// The two bodies of a contact, ascending; none on an obstacle.
-fn pair_of(contact: &ModelContact, of: &[Vec<ElementId>]) -> Option<[usize; 2]> {
-    let body = |surface: &Surface| body_of(surface.faces.first()?.parent, of);
-    let ModelTarget::Surface(primary) = &contact.primary else {
-        return None;
-    };
-    let mut pair = [body(&contact.secondary)?, body(primary)?];
-    pair.sort_unstable();
-    Some(pair)
-}
-
-fn shares_nodes(one: &Surface, other: &Surface) -> bool {
-    one.nodes.iter().any(|node| other.index_of(*node).is_some())
 }

@@ -189,7 +189,7 @@ impl Builder<'_> {
             bodies.iter().map(|body| body.spec.cells.clone()).collect();
         let mut contacts = self.contacts(&mesh, &bodies, &cells);
         self.listed_twice(&contacts);
-        contacts.extend(self.general_contact(&mesh, (&bodies, &cells), &contacts));
+        contacts.extend(self.general_contact(&mesh, (&bodies, &cells), (&contacts, &joints)));
         self.contacts_of_deleted(&bodies, &contacts);
         contacts.extend(self.stops(&mesh, &bodies, &discrete));
         self.nonlinear_in_zones();
@@ -283,6 +283,7 @@ impl Builder<'_> {
         self.startable(&system);
         self.advise(&system);
         let levels = self.levels(&system);
+        self.probes_at_contacts(&probes, &system);
         let probes = self.weighed(probes, &system);
         let end = self.case.time.end.0;
         let reference = self.reference(&system, end);

@@ -56,6 +56,27 @@ impl Builder<'_> {
         probes
     }
 
+    /// Refuses probes of contacts where there is no contact point.
+    pub(super) fn probes_at_contacts(&mut self, probes: &[BuiltProbe], system: &System) {
+        let wanted = |probe: &&BuiltProbe| probe.record.contains(&Motion::Contact);
+        for probe in probes.iter().filter(wanted) {
+            let has = |node: u32| {
+                let mesh_node = system.mesh_node[node as usize];
+                probe.nodes.iter().any(|(own, _)| *own == mesh_node)
+            };
+            let mut points = system.contacts.iter().flat_map(|contact| &contact.points);
+            if points.any(|point| point.carriers().any(|(node, _)| has(node))) {
+                continue;
+            }
+            let place = probe.record.iter().position(|of| *of == Motion::Contact);
+            let path = format!("probe.{}.record[{}]", probe.name, place.unwrap_or(0));
+            let message = "there is no contact point at the nodes of this probe: those of a contact are on its secondary side";
+            let problem = Problem::new(path, message).found("contact");
+            let accepted = ["a probe on the secondary side of a contact"];
+            self.problems.push(problem.accepted(accepted));
+        }
+    }
+
     /// Probes with masses as weights where they ask for them.
     pub(super) fn weighed(
         &mut self,

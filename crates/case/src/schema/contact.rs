@@ -62,7 +62,8 @@ pub struct Contact {
 }
 
 /// General contact: the outer sides of all bodies, in the plane and in space, each body with each other; bodies at finite strain or with
-/// finite rotations with themselves too. Of shells and beams they are around middles and axes; bars take no part. Pairs of bodies that a contact of `[contact]` joins, or that share nodes, are left out.
+/// finite rotations with themselves too. Of shells and beams they are around middles and axes; bars take no part. Pairs of bodies are left out that a contact of `[contact]`, a
+/// transition, an overlap or an interface joins, or that share nodes, and cells in an overlap.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct GeneralContact {
@@ -73,9 +74,26 @@ pub struct GeneralContact {
     /// Largest penetration that counts as contact. Default: the least thickness of a cell at the outer sides of the two bodies. It means
     /// nothing to shells and beams.
     pub depth: Option<Length>,
+    /// What has a contact, with results of its own.
+    #[serde(default)]
+    pub by: GeneralBy,
     /// What is different between two materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
+}
+
+/// What has a contact of the general contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum GeneralBy {
+    /// Each two bodies, `all-a-b` of the bodies `a` and `b`: forces, impulses and restitution of each pair. Memory and time grow with the square of the
+    /// number of bodies.
+    #[default]
+    Bodies,
+    /// Each two materials, `all-m-n` of the materials `m` and `n`, `all-m` of all bodies of one: one search over all their sides, memory in
+    /// proportion to their faces. What two bodies do to each other is not told apart. Bodies of one material have contacts of their own
+    /// where their sections, their zones or their rotations differ, and where cells are deleted. Shells of one contact do not meet edge on edge.
+    Materials,
 }
 
 /// Law and friction between bodies of two materials.

@@ -44,8 +44,8 @@ pub use carom_quantities::{
 };
 pub use carom_schemes::Scheme;
 pub use contact::{
-    Basis, Contact, Friction, GeneralContact, Integration, IntegrationName, IntegrationWith,
-    MaterialPair, Mortar, Nodes, Penetration, Sliding,
+    Basis, Contact, Friction, GeneralBy, GeneralContact, Integration, IntegrationName,
+    IntegrationWith, MaterialPair, Mortar, Nodes, Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
 pub use explicit::{BulkViscosity, Deletion, MassScaling};

@@ -143,6 +143,9 @@ pub enum Motion {
     /// Mean stress of the cell nearest to `at`, Pa, and its von Mises equivalent; at finite strain of Cauchy, of beams and shells the
     /// mean over the section. It takes about as long as the internal forces of the body.
     Stress,
+    /// What the contact points at the nodes do, of the secondary side of a contact: sum of their normal forces, N, that over the area that they stand for, Pa, and the least of
+    /// their gaps, m.
+    Contact,
 }
 
 /// Output of a run beside its histories, which are always written at every step.
@@ -239,6 +242,13 @@ pub enum Field {
     Acceleration,
     /// Stress of the cells, Pa; of beams and shells the mean over the section, of shells also that at both faces.
     Stress,
+    /// Strain of the cells of solids and bars, with `principal_strain`: at small strain that of the displacement, at finite strain the logarithmic one. Zero of
+    /// beams and shells, and across a plate under plane stress.
+    Strain,
+    /// Principal values of the stress of the cells, the largest first, Pa.
+    PrincipalStress,
+    /// Stress at the nodes, Pa: the mean of the cells around a node, weighted by their volumes, with `nodal_von_mises`.
+    NodalStress,
     /// Rotation of the nodes of beams, rad; zero elsewhere.
     Rotation,
     /// Forces (N) and moments (N m) in the sections of beams, in the axes of the section; zero elsewhere. `section_force`: normal

@@ -8,6 +8,7 @@ mod compare;
 mod damaged;
 mod defaults;
 mod events;
+mod forged;
 mod general;
 mod grades;
 mod large;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_case::{Input, build, parse, run};
+use carom_case::{Built, Input, build, parse, run};
 use carom_output::{Grade, Summary};
 
 use crate::compare::Nobody;
@@ -17,9 +17,15 @@ pub fn result(text: &str) -> (Summary, Histories) {
 
 /// Summary of a case, and a table of its results folder.
 pub fn result_with(text: &str, table: &str) -> (Summary, Histories) {
+    result_of(text, table, |_| {})
+}
+
+/// The same of a case that is changed after it was built.
+pub fn result_of(text: &str, table: &str, change: impl FnOnce(&mut Built)) -> (Summary, Histories) {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap();
-    let built = build(&case, &locator, &input).unwrap();
+    let mut built = build(&case, &locator, &input).unwrap();
+    change(&mut built);
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("results");
     let finished = run(

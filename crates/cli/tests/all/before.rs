@@ -105,7 +105,12 @@ fn a_check_estimates_the_run_and_draws_the_model() {
         work.path(),
         &["check", bars.to_str().unwrap(), "--picture", "bars.svg"],
     );
-    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    // a line for each bar
+    let picture = fs::read_to_string(work.path().join("bars.svg")).unwrap();
+    for body in ["striker", "target"] {
+        assert!(picture.contains(body), "{picture:.300}");
+    }
 }
 
 #[test]

@@ -45,9 +45,16 @@ struct Reach {
     reach: f64,
 }
 
-/// The outer side of a body.
+/// Whose side it is: a body's, or that of a contact whose sides have several.
+#[derive(Clone, Copy, PartialEq)]
+enum Owner {
+    Body(usize),
+    Contact(usize),
+}
+
+/// The outer side of a body, or of several.
 struct Side {
-    body: usize,
+    owner: Owner,
     /// Its nodes, ascending.
     nodes: Vec<u32>,
     /// How far a side may be beyond the box of its nodes, over the size of the box.
@@ -71,20 +78,23 @@ impl Far {
         far
     }
 
-    /// Takes in the sides of a contact, if it does not look for what is far. Nodes that others carry move in their own way.
+    /// Takes in the sides of a contact, if it does not look for what is far.
     fn reach_of(&mut self, system: &System, number: usize) -> Option<Reach> {
-        let (contact, unknowns) = (&system.contacts[number], &system.unknowns);
+        let contact = &system.contacts[number];
         let Target::Surface(faces) = &contact.target else {
             return None;
         };
         let (secondary, Some(primary)) = system.sides[number] else {
             return None;
         };
-        let (nodes, spread) = contact.nodes();
-        let moves = |&node: &u32| unknowns.carrier(node).is_none() && !unknowns.of(node).is_empty();
-        if !contact.near_only || !nodes.iter().all(moves) {
+        if !contact.near_only {
             return None;
         }
+        let (_, spread) = contact.nodes();
+        let [secondary, primary] = match system.is_of_many(number) {
+            true => [Owner::Contact(number); 2],
+            false => [secondary, primary].map(Owner::Body),
+        };
         let own = contact.points.iter().flat_map(|point| point.carriers());
         let own: Vec<u32> = own.map(|(node, _)| node).collect();
         let other = faces.iter().flat_map(|face| face.corners()).copied();
@@ -102,12 +112,12 @@ impl Far {
         })
     }
 
-    fn side(&mut self, body: usize, bulge: f64, nodes: impl Iterator<Item = u32>) -> usize {
-        let known = self.sides.iter().position(|side| side.body == body);
+    fn side(&mut self, owner: Owner, bulge: f64, nodes: impl Iterator<Item = u32>) -> usize {
+        let known = self.sides.iter().position(|side| side.owner == owner);
         let number = known.unwrap_or(self.sides.len());
         if known.is_none() {
             self.sides.push(Side {
-                body,
+                owner,
                 nodes: Vec::new(),
                 bulge,
                 bounds: Bounds::EMPTY,
@@ -154,12 +164,9 @@ impl Far {
 
     fn take_ways(&mut self, unknowns: &Unknowns, vector: &[f64], factor: f64) {
         for side in &mut self.sides {
-            let square = |&node: &u32| {
-                let way = &vector[unknowns.translations_of(node)];
-                way.iter().map(|way| way * way).sum::<f64>()
-            };
-            let largest = side.nodes.iter().map(square).fold(0.0, f64::max);
-            side.way = factor * largest.sqrt();
+            let ways = side.nodes.iter();
+            let ways = ways.map(|&node| way(unknowns, node, vector));
+            side.way = factor * ways.fold(0.0, f64::max);
         }
     }
 
@@ -227,5 +234,18 @@ impl Side {
         }
         let size = (0..3).map(|i| bounds.max[i] - bounds.min[i]);
         self.bounds = bounds.widened(self.bulge * size.fold(0.0, f64::max));
+    }
+}
+
+/// The most that a node moves by a system vector, in the unit of its translations: of one that another carries, which turns its arm too, the
+/// way of that node and the angle times the length of the arm.
+fn way(unknowns: &Unknowns, node: u32, vector: &[f64]) -> f64 {
+    let size = |a: [f64; 3]| a.iter().map(|a| a * a).sum::<f64>().sqrt();
+    match unknowns.carrier(node) {
+        None => size(unknowns.vector(node, vector)),
+        Some(carrier) => {
+            let turn = unknowns.spin(carrier.node, vector);
+            size(unknowns.vector(carrier.node, vector)) + size(turn) * size(carrier.arm)
+        }
     }
 }

@@ -421,6 +421,12 @@ pub struct Origin {
 }
 
 impl Origin {
+    /// Whether it is of the same zone as another one, in the length of each array.
+    pub fn is_like(&self, other: &Origin) -> bool {
+        let lengths = |one: &Origin| [one.u.len(), one.history.len(), one.frames.len()];
+        lengths(self) == lengths(other)
+    }
+
     /// The present state of a zone.
     pub fn of(driver: &Driver) -> Origin {
         let mut bodies = driver.system().bodies.iter();

@@ -10,6 +10,13 @@ use crate::results::Settings;
 use crate::results::sensor::{COMPONENTS, ContactPoint};
 use crate::rows::unique;
 
+/// What a probe of a contact tells, with its unit.
+const AT_POINTS: [(&str, &str); 3] = [
+    ("contact force", "N"),
+    ("contact pressure", "Pa"),
+    ("gap", "m"),
+];
+
 const FILE: &str = "histories.csv";
 const CONTACT_FILE: &str = "contact.csv";
 
@@ -139,6 +146,10 @@ pub(crate) fn columns(
     for probe in settings.probes.iter().filter(|probe| probe.cell.is_some()) {
         let of = |what: &&str| column(&["probe", &probe.name, &format!("stress {what}")], "Pa");
         names.extend(stresses(system).iter().map(of));
+    }
+    for probe in settings.probes.iter().filter(|probe| probe.contact) {
+        let of = |(what, unit): &(&str, &str)| column(&["probe", &probe.name, what], unit);
+        names.extend(AT_POINTS.iter().map(of));
     }
     for support in &system.supports {
         let add = |what: String, unit| column(&["support", &support.name, &what], unit);

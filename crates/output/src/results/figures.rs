@@ -91,6 +91,11 @@ impl Curves {
         &self.traces
     }
 
+    /// Whether this can be gone on with.
+    pub(crate) fn takes(&self, kept: &Traces) -> bool {
+        kept.motions.len() == self.traces.motions.len()
+    }
+
     /// Goes on from what was seen.
     pub(crate) fn go_on(&mut self, kept: Traces) {
         self.traces = kept;

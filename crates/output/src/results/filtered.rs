@@ -139,6 +139,13 @@ impl Filtered {
         (&self.times, &self.histories)
     }
 
+    /// Whether this can be gone on with.
+    pub(super) fn takes(&self, (times, histories): &(Vec<f64>, Vec<Vec<f64>>)) -> bool {
+        histories.len() == self.histories.len()
+            && histories.iter().all(|history| history.len() == times.len())
+            && times.windows(2).all(|pair| pair[0] < pair[1])
+    }
+
     /// Goes on from the times and histories of a checkpoint.
     pub(super) fn go_on(&mut self, (times, histories): (Vec<f64>, Vec<Vec<f64>>)) {
         (self.times, self.histories) = (times, histories);

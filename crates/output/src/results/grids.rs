@@ -12,6 +12,7 @@ use carom_mesh::Face;
 use crate::Error;
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
 use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
+use crate::results::derived::Derived;
 use crate::results::snapshot::Snapshot;
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
@@ -106,6 +107,8 @@ impl Volume {
             false => None,
         };
         let mises = cell_von_mises(&stress, shells.as_ref());
+        let derived = Derived::new(system, &snapshot.motion, fields);
+        point_fields.extend(derived.point_fields());
         let mut cell_fields = vec![Field {
             name: "body",
             values: Values::Integer(&self.body),
@@ -138,6 +141,7 @@ impl Volume {
                 values: Values::Scalar(&mises),
             });
         }
+        cell_fields.extend(derived.cell_fields());
         if let Some(shells) = &shells {
             cell_fields.extend(shells.fields(fields));
         }

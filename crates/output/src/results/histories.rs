@@ -6,6 +6,7 @@
 //! column has these. Springs and dashpots have the sum of their forces, and the mean of their elongations or rates, at the end
 //! of the step. (One file with both would be half blank.)
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use carom_dynamics::{ContactReport, Order, State, StepReport, System};
@@ -28,6 +29,8 @@ pub(crate) struct Histories {
     probes: Vec<(Probe, Vec<Sensor>)>,
     /// Body and place in it of the cell of each probe, if it has one.
     cells: Vec<Option<[usize; 2]>>,
+    /// The contact points of each probe, with the parts of their forces there, if it follows them.
+    points: Vec<Option<Vec<(usize, f64)>>>,
     row: Vec<Cell<'static>>,
     every: Option<f64>,
     since: Since,
@@ -77,6 +80,11 @@ impl Histories {
             contact,
             row: Vec::with_capacity(columns.len()),
             cells: settings.probes.iter().map(|of| cell(system, of)).collect(),
+            points: settings
+                .probes
+                .iter()
+                .map(|of| points(system, of))
+                .collect(),
             since: since.unwrap_or_default(),
             ..Histories::closed(settings, sensors)
         })
@@ -91,6 +99,7 @@ impl Histories {
             links: settings.zoning.is_some(),
             probes: probes.zip(sensors).collect(),
             cells: Vec::new(),
+            points: Vec::new(),
             row: Vec::new(),
             every: settings.history_every,
             since: Since::default(),
@@ -158,6 +167,9 @@ impl Histories {
             if probe.cell.is_some() {
                 row.extend(stress(system, *at, state));
             }
+        }
+        for points in self.points.iter().flatten() {
+            row.extend(at_points(system, points, state));
         }
         push_supports(system, report, row);
         for load in loads {
@@ -309,6 +321,39 @@ fn cell(system: &System, probe: &Probe) -> Option<[usize; 2]> {
         let place = body.cells().iter().position(|own| *own == cell)?;
         Some([k, place])
     })
+}
+
+/// The contact points at the nodes of a probe that follows them, each with the part of its force there.
+fn points(system: &System, probe: &Probe) -> Option<Vec<(usize, f64)>> {
+    if !probe.contact {
+        return None;
+    }
+    let nodes = probe.nodes.iter();
+    let nodes: BTreeSet<u32> = nodes
+        .map(|(node, _)| system.number[*node as usize])
+        .collect();
+    let all = system.contacts.iter().flat_map(|contact| &contact.points);
+    let parts = all.enumerate().map(|(number, point)| {
+        let own = point.carriers().filter(|(node, _)| nodes.contains(node));
+        (number, own.map(|(_, weight)| weight).sum())
+    });
+    Some(parts.filter(|(_, weight)| *weight > 0.0).collect())
+}
+
+/// Force, pressure and least gap of contact points.
+fn at_points(system: &System, points: &[(usize, f64)], state: &State) -> [Cell<'static>; 3] {
+    let interface = &state.interface;
+    let (mut force, mut area, mut gap) = (0.0, 0.0, f64::INFINITY);
+    for &(number, weight) in points {
+        let (contact, own) = system.point(number);
+        force += weight * interface.force[number];
+        area += weight * contact.points[own].area;
+        gap = gap.min(interface.gap[number]);
+    }
+    let pressure = (area > 0.0).then_some(force / area);
+    // the gap of what faces nothing does not exist
+    let gap = Some(gap).filter(|gap| *gap != f64::INFINITY);
+    [Cell::Number(force), pressure.into(), gap.into()]
 }
 
 /// Mean stress of a cell and its equivalent, in the order of [`stresses`].

@@ -87,6 +87,13 @@ impl ContactTotals {
     }
 }
 
+impl Told {
+    /// Whether it is of so many contacts.
+    pub(crate) fn is_of(&self, contacts: usize) -> bool {
+        self.contacts.len() == contacts && self.rows.len() <= SHOWN
+    }
+}
+
 impl Impacts {
     pub(crate) fn create(
         folder: &mut Folder,
@@ -101,9 +108,8 @@ impl Impacts {
                 mean: PeakOfMean::new(window),
                 window,
                 of_parts: zoning.is_some_and(|zoning| {
-                    let (secondary, primary) = system.sides[contact];
-                    let sides = [Some(secondary), primary];
-                    sides.iter().flatten().any(|body| zoning.is_part(*body))
+                    let mut bodies = system.touching[contact].iter();
+                    bodies.any(|body| zoning.is_part(*body))
                 }),
                 closed: 0.0,
                 peak_friction: 0.0,

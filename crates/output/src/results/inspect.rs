@@ -3,18 +3,25 @@
 use carom_dynamics::System;
 
 use crate::Error;
-use crate::plot::{Frame, Scene, film_figure};
+use crate::plot::{Axis, Curve, Figure, Frame, Panel, Role, Scene, film_figure};
 use crate::results::outlines::{Outlines, gap};
 use crate::results::page::quality::qualities;
 
-/// The picture of a model in two or three dimensions, with its obstacles: cells are the darker the farther their shape is from that of
-/// the regular element. `None` where nothing can be drawn: in one dimension, and of points and springs alone.
+/// Height of the tick at a node, over the distance of two bodies under each other.
+const TICK: f64 = 0.4;
+
+/// The picture of a model, with its obstacles: in two and three dimensions cells are the darker the farther their shape is from that of
+/// the regular element, in one each body has a line of its own, with a tick at each node. `None` where nothing can be drawn: of points
+/// and springs alone.
 ///
 /// # Errors
 /// [`Error::Drawing`].
 pub fn model_picture(system: &System) -> Option<Result<String, Error>> {
+    if system.dim < 2 {
+        return lines(system);
+    }
     let outlines = Outlines::new(system, |_, _| true);
-    if system.dim < 2 || outlines.is_blank() {
+    if outlines.is_blank() {
         return None;
     }
     let (values, _) = qualities(system);
@@ -32,4 +39,49 @@ pub fn model_picture(system: &System) -> Option<Result<String, Error>> {
     };
     let frame = outlines.frame(system, &place, &value, frame);
     Some(film_figure(&scene, &[frame]))
+}
+
+/// The bodies of a model in one dimension under each other, the first one on top.
+fn lines(system: &System) -> Option<Result<String, Error>> {
+    let bodies = system.bodies.iter().enumerate().map(|(number, body)| {
+        let mut nodes = Vec::new();
+        body.each_element(&mut |element| {
+            nodes.extend(element.iter().map(|&node| system.x[node as usize][0]));
+        });
+        nodes.sort_unstable_by(f64::total_cmp);
+        nodes.dedup();
+        let row = -(number as f64);
+        let x: Vec<f64> = nodes.iter().flat_map(|&x| [x; 3]).collect();
+        let y: Vec<f64> = nodes.iter().flat_map(|_| [row, row + TICK, row]).collect();
+        (body.name(), x, y)
+    });
+    let bodies: Vec<(&str, Vec<f64>, Vec<f64>)> =
+        bodies.filter(|(_, x, _)| !x.is_empty()).collect();
+    if bodies.is_empty() {
+        return None;
+    }
+    let curves = bodies.iter().map(|(name, x, y)| Curve {
+        name,
+        x,
+        y,
+        role: Role::Computed,
+    });
+    let figure = Figure {
+        title: "Model".to_owned(),
+        abscissa: Axis {
+            quantity: "position",
+            unit: "m",
+        },
+        panels: vec![Panel {
+            title: "Bodies under each other, a tick at each node".to_owned(),
+            ordinate: Axis {
+                quantity: "",
+                unit: "",
+            },
+            curves: curves.collect(),
+            clip: false,
+        }],
+        columns: 1,
+    };
+    Some(figure.svg())
 }

@@ -101,6 +101,20 @@ impl Instants {
         &self.instants
     }
 
+    /// Whether this can be gone on with.
+    pub(crate) fn takes(&self, system: &System, kept: &[Instant]) -> bool {
+        let contacts = system.contacts.len();
+        let is_of = |(own, kept): (&Instant, &Instant)| {
+            let acting = |one: &Acting| one.contact < contacts && self.nodes.contains(&one.node);
+            own.level == kept.level
+                && own.contacts == kept.contacts
+                && kept.contact < contacts.max(1)
+                && [0, self.nodes.len()].contains(&kept.moved.len())
+                && kept.forces.iter().all(acting)
+        };
+        kept.len() == self.instants.len() && self.instants.iter().zip(kept).all(is_of)
+    }
+
     /// Goes on from what was kept.
     pub(crate) fn go_on(&mut self, kept: Vec<Instant>) {
         self.instants = kept;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
 
-use carom_dynamics::{Stepper, System};
+use carom_dynamics::{LONGEST, Stepper, System};
 use serde::Deserialize;
 
 use super::due::Due;
@@ -53,6 +53,7 @@ impl Results {
         system: Arc<System>,
     ) -> Result<Results, Error> {
         let Gathered((listed, histories, impacts, sent), beside) = checkpoint.gathered()?;
+        is_of(&impacts, (&folder, &system))?;
         let [history, contact] = columns::files(&settings);
         let tables = [
             (history.as_str(), histories.0[0]),
@@ -73,7 +74,7 @@ impl Results {
         folder.cut_back(listed)?;
         let tables = Tables::GoOn(histories, impacts, sent.unwrap_or_default());
         let mut results = Results::with((settings, system), folder, tables)?;
-        results.recall(beside, checkpoint);
+        results.recall(beside, checkpoint)?;
         Ok(results)
     }
 
@@ -90,17 +91,49 @@ impl Results {
         system: Arc<System>,
     ) -> Result<Results, Error> {
         let Gathered((_, _, impacts, _), beside) = checkpoint.gathered()?;
+        is_of(&impacts, (&folder, &system))?;
         let listed = folder.listed()?;
         folder.cut_back(listed)?;
         settings.fields = None;
         let tables = Tables::Closed(impacts.1);
         let mut results = Results::with((settings, system), folder, tables)?;
-        results.recall(beside, checkpoint);
+        results.recall(beside, checkpoint)?;
         Ok(results)
     }
 
+    /// Whether what was gathered is of this run: what was written by it always is.
+    fn takes(&self, beside: &Beside) -> bool {
+        let Beside(
+            traces,
+            kept,
+            instants,
+            _,
+            loads,
+            spectra,
+            filtered,
+            series,
+            raster,
+            _,
+            totals,
+            wall,
+        ) = beside;
+        self.curves.takes(traces)
+            && self.stills.takes(&self.system, kept)
+            && self.instants.takes(&self.system, instants)
+            && [0, self.system.nonlinear.load_names.len()].contains(&loads.len())
+            && self.spectra.takes(spectra)
+            && self.filtered.takes(filtered)
+            && self.series.takes(series)
+            && self.raster.takes(raster)
+            && totals.spent < LONGEST
+            && *wall < LONGEST
+    }
+
     /// Takes what was gathered until a checkpoint.
-    fn recall(&mut self, beside: Beside, checkpoint: &Checkpoint) {
+    fn recall(&mut self, beside: Beside, checkpoint: &Checkpoint) -> Result<(), Error> {
+        if !self.takes(&beside) {
+            return Err(checkpoint::of_another_run(self.folder.path()));
+        }
         let Beside(
             traces,
             kept,
@@ -130,6 +163,7 @@ impl Results {
         self.totals = totals;
         self.earlier = wall;
         self.due = Due::from(checkpoint.head.time);
+        Ok(())
     }
 
     /// Writes a checkpoint if one is due.
@@ -192,5 +226,13 @@ impl Results {
         );
         self.due.written(state.step, spent);
         Ok(())
+    }
+}
+
+/// Refuses what was told of impacts of other contacts.
+fn is_of(impacts: &impacts::Kept, (folder, system): (&Folder, &System)) -> Result<(), Error> {
+    match impacts.1.is_of(system.contacts.len()) {
+        true => Ok(()),
+        false => Err(checkpoint::of_another_run(folder.path())),
     }
 }

@@ -15,12 +15,13 @@ pub(crate) fn maxima(results: &Results) -> Maxima {
     Maxima {
         instants: stills.len(),
         von_mises: of_cells(results, &stills, 0),
+        strain: of_cells(results, &stills, 2),
         plastic_strain: of_cells(results, &stills, 1),
         displacement: of_nodes(results, &stills),
     }
 }
 
-/// The largest of the values at cells: stress or plastic strain.
+/// The largest of the values at cells: stress, plastic strain or strain.
 fn of_cells(results: &Results, stills: &[&Still], field: usize) -> Option<Maximum> {
     let (system, seen) = (&results.system, &results.stills.seen);
     let values = stills.iter();

@@ -13,6 +13,7 @@ mod columns;
 mod conclusion;
 mod contacts;
 mod costs;
+mod derived;
 mod discrete;
 mod due;
 pub(crate) mod exact;

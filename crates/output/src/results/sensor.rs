@@ -108,7 +108,7 @@ pub(crate) fn contact_point(
     };
     let (body, other) = system.sides[index];
     let mut names = [Some(body), other].map(|body| body.map(|b| system.bodies[b].name()));
-    if names[0] == names[1] {
+    if names[0] == names[1] || system.is_of_many(index) {
         names = [Some("secondary"), Some("primary")];
     }
     let nodes = [Some(secondary), primary].into_iter().zip(names);

@@ -93,6 +93,8 @@ pub struct Probe {
     pub acceleration: bool,
     /// Whether the acceleration with that of the frame of coordinates is written, m/s².
     pub absolute_acceleration: bool,
+    /// Whether force (N), pressure (Pa) and gap (m) of the contact points at the nodes are written.
+    pub contact: bool,
     /// Response spectrum of the absolute acceleration; `None` for none.
     pub spectrum: Option<Spectrum>,
     /// Classes (Hz) of the filters ([`ChannelFilter`](carom_signals::ChannelFilter)) behind which the accelerations are written too.
@@ -141,6 +143,12 @@ pub struct Fields {
     pub acceleration: bool,
     /// Mean stress of the cells and its von Mises equivalent, Pa.
     pub stress: bool,
+    /// Strain of the cells and its principal values.
+    pub strain: bool,
+    /// Principal values of the mean stress of the cells, Pa.
+    pub principal_stress: bool,
+    /// Stress at the nodes, the mean of the cells around them, and its von Mises equivalent, Pa.
+    pub nodal_stress: bool,
     /// Rotation of the nodes of beams, rad.
     pub rotation: bool,
     /// Forces (N) and moments (N m) in the sections of beams.

@@ -51,6 +51,17 @@ impl Spectra {
         self.probes.iter().map(|p| &p.histories[..]).collect()
     }
 
+    /// Whether this can be gone on with.
+    pub(crate) fn takes(&self, kept: &[Vec<Vec<[f64; 2]>>]) -> bool {
+        let mut pairs = self.probes.iter().zip(kept);
+        kept.len() == self.probes.len()
+            && pairs.all(|(probe, histories)| {
+                let length = histories.first().map_or(0, Vec::len);
+                histories.len() == probe.histories.len()
+                    && histories.iter().all(|history| history.len() == length)
+            })
+    }
+
     /// Goes on from what was kept.
     pub(crate) fn go_on(&mut self, kept: Vec<Vec<Vec<[f64; 2]>>>) {
         for (probe, histories) in self.probes.iter_mut().zip(kept) {

@@ -41,6 +41,12 @@ impl Trace {
         }
     }
 
+    /// Whether another one, of a checkpoint, may take its place.
+    pub(crate) fn takes(&self, kept: &Trace) -> bool {
+        let mut pairs = kept.points.windows(2);
+        kept.limit == self.limit && pairs.all(|pair| pair[0].0 <= pair[1].0)
+    }
+
     /// Whether there is nothing to draw.
     pub(crate) fn is_empty(&self) -> bool {
         self.points.is_empty()

@@ -171,6 +171,9 @@ pub fn all_fields(every: f64) -> Option<Fields> {
         velocity: true,
         acceleration: true,
         stress: true,
+        strain: true,
+        principal_stress: true,
+        nodal_stress: true,
         rotation: false,
         section_forces: false,
         vtkhdf: false,
@@ -190,6 +193,7 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
         velocity: true,
         acceleration: true,
         absolute_acceleration: false,
+        contact: false,
         spectrum: None,
         filters: Vec::new(),
     }

@@ -80,9 +80,8 @@ fn has_duration(system: &System, contact: usize) -> bool {
 
 /// Whether waves run in a body of a contact.
 pub(super) fn has_waves(system: &System, contact: usize) -> bool {
-    let (secondary, primary) = system.sides[contact];
-    let mut bodies = [Some(secondary), primary].into_iter().flatten();
-    bodies.any(|body| system.bodies[body].wave_speed().is_some())
+    let mut bodies = system.touching[contact].iter();
+    bodies.any(|&body| system.bodies[body].wave_speed().is_some())
 }
 
 fn name<'a>(evidence: &'a Evidence, impact: &Impact) -> &'a str {

@@ -49,6 +49,15 @@ impl RasterOf {
         }
     }
 
+    /// Whether this can be gone on with.
+    pub(crate) fn takes(&self, before: &RasterOf) -> bool {
+        let mut last = before.last.iter().flatten();
+        before.rows == self.rows
+            && before.cells.len() == self.cells.len()
+            && before.last.len() == self.last.len()
+            && last.all(|column| *column < COLUMNS)
+    }
+
     /// Goes on from a raster up to another time or the same: what was in a column is in those of its time.
     pub(crate) fn go_on(&mut self, before: RasterOf) {
         if before.end == self.end {

@@ -57,7 +57,44 @@ pub(crate) struct ContactSeries {
     given: f64,
 }
 
+impl Series {
+    /// Whether another one, of a checkpoint, may take its place.
+    fn takes(&self, kept: &Series) -> bool {
+        let contact = |(own, kept): (&ContactSeries, &ContactSeries)| {
+            own.force.takes(&kept.force)
+                && own.mean.takes(&kept.mean)
+                && own.gap.takes(&kept.gap)
+                && own.impulse.takes(&kept.impulse)
+                && takes_all(&own.moment, &kept.moment)
+        };
+        let probe = |(own, kept): (&Vec<[Trace; 3]>, &Vec<[Trace; 3]>)| takes_triples(own, kept);
+        kept.contacts.len() == self.contacts.len()
+            && self.contacts.iter().zip(&kept.contacts).all(contact)
+            && kept.probes.len() == self.probes.len()
+            && self.probes.iter().zip(&kept.probes).all(probe)
+            && takes_all(&self.supports, &kept.supports)
+            && takes_triples(&self.named, &kept.named)
+            && takes_triples(&self.loads, &kept.loads)
+            && self.momentum_residual.takes(&kept.momentum_residual)
+    }
+}
+
+fn takes_all(own: &[Trace], kept: &[Trace]) -> bool {
+    let mut pairs = own.iter().zip(kept);
+    own.len() == kept.len() && pairs.all(|(own, kept)| own.takes(kept))
+}
+
+fn takes_triples(own: &[[Trace; 3]], kept: &[[Trace; 3]]) -> bool {
+    let mut pairs = own.iter().zip(kept);
+    own.len() == kept.len() && pairs.all(|(own, kept)| takes_all(own, kept))
+}
+
 impl SeriesOf {
+    /// Whether this can be gone on with.
+    pub(crate) fn takes(&self, kept: &Series) -> bool {
+        self.series.takes(kept)
+    }
+
     /// Nothing yet; `probes`: the sensors of each.
     pub(crate) fn new(system: &System, probes: &[Vec<Sensor>]) -> SeriesOf {
         let components: usize = probes.iter().map(Vec::len).sum();

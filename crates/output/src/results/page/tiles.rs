@@ -215,6 +215,11 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
             cells,
         ),
         (
+            ("Largest principal strain", ""),
+            (&maxima.strain, ""),
+            "a cell",
+        ),
+        (
             ("Largest plastic strain", ""),
             (&maxima.plastic_strain, "plastic"),
             cells,

@@ -109,6 +109,13 @@ impl Stills {
         self.begin
     }
 
+    /// Whether this can be gone on with.
+    pub(crate) fn takes(&self, system: &System, kept: &Kept) -> bool {
+        let single = [&kept.closing, &kept.largest.still, &kept.release.still];
+        let mut all = kept.equal.iter().chain(single.into_iter().flatten());
+        all.all(|still| still.is_of(system, &self.seen))
+    }
+
     /// Goes on from what was kept.
     pub(crate) fn go_on(&mut self, kept: Kept) {
         self.kept = kept;

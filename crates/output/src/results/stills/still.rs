@@ -6,6 +6,7 @@ use carom_dynamics::{InterfaceState, Motion, Order, System};
 use serde::{Deserialize, Serialize};
 
 use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
+use crate::results::derived::{principal, strains};
 use crate::results::stills::Seen;
 
 /// A state that is kept, in single precision but for its largest values.
@@ -28,8 +29,8 @@ pub(crate) struct Still {
     pub(crate) plastic: Option<Vec<f32>>,
     /// Whether each cell of all bodies is deleted; none where no body has deletion.
     pub(crate) deleted: Option<Vec<bool>>,
-    /// Largest equivalent stress (Pa) and plastic strain of all cells.
-    pub(crate) largest: [Option<Largest>; 2],
+    /// Largest equivalent stress (Pa), plastic strain and magnitude of a principal strain of all cells.
+    pub(crate) largest: [Option<Largest>; 3],
     /// Kinetic energy ½ Σ m |v|² of each body with lumped masses, J.
     pub(crate) kinetic: Vec<f64>,
     /// Strain energy of each body, J; not finite where a body has none at this state.
@@ -49,6 +50,22 @@ pub(crate) struct Largest {
 }
 
 impl Still {
+    /// Whether it is of this system.
+    pub(crate) fn is_of(&self, system: &System, seen: &Seen) -> bool {
+        let (nodes, cells) = (seen.nodes.len(), seen.cells.len());
+        let (all, bodies) = (seen.body_of_cell.len(), system.bodies.len());
+        let contact = if system.contacts.is_empty() { 0 } else { nodes };
+        let largest = self.largest.iter().flatten();
+        self.time.is_finite()
+            && [self.moved.len(), self.speed.len()] == [nodes; 2]
+            && self.contact.len() == contact
+            && [self.von_mises.len(), self.pressure.len()] == [cells; 2]
+            && self.plastic.as_ref().is_none_or(|own| own.len() == cells)
+            && self.deleted.as_ref().is_none_or(|own| own.len() == all)
+            && [self.kinetic.len(), self.strain.len()] == [bodies; 2]
+            && largest.into_iter().all(|one| (one.cell as usize) < all)
+    }
+
     /// Of an accepted state.
     pub(crate) fn of(
         system: &System,
@@ -74,6 +91,12 @@ impl Still {
             cells.map(|cell| values[*cell as usize] as f32).collect()
         };
         let pressure: Vec<f64> = stress.iter().map(|s| -(s[0] + s[1] + s[2]) / 3.0).collect();
+        let strains = strains(system, motion);
+        let strains = strains
+            .iter()
+            .map(principal)
+            .map(|[first, _, last]| first.max(-last));
+        let strains: Vec<f64> = strains.collect();
         let is_there = |cell: usize| deleted.as_ref().is_none_or(|deleted| !deleted[cell]);
         let largest = |values: &[f64]| {
             let (value, cell) = largest(values, is_there)?;
@@ -92,6 +115,7 @@ impl Still {
             largest: [
                 largest(&von_mises),
                 plastic.and_then(|plastic| largest(&plastic)),
+                largest(&strains),
             ],
             kinetic: kinetic(system, motion),
             strain: strain(system, motion),
