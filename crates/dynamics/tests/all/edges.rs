@@ -75,6 +75,7 @@ fn sheared(secondary: usize) -> Driver {
             moment_about: None,
             near_only: false,
             merge_within: None,
+            parts: None,
         }],
         discrete: Vec::new(),
         supports: vec![Support {

@@ -78,6 +78,7 @@ fn pressed(depth: f64, way: f64) -> Driver {
             moment_about: None,
             near_only: false,
             merge_within: None,
+            parts: None,
         }],
         discrete: Vec::new(),
         supports: vec![Support {
