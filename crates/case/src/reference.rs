@@ -57,6 +57,7 @@ const ORDER: &[&str] = &[
     "support",
     "load",
     "contact",
+    "general-contact",
     "time",
     "zone",
     "arlequin",

@@ -30,7 +30,7 @@ use crate::system::System;
 /// Most passes of an iteration.
 const PASSES: usize = 12;
 
-/// Imbalance of the last pass over that of the first one.
+/// Imbalance of the last pass over that of the first one, and over what the iteration will leave.
 const LEFT: f64 = 0.1;
 
 /// Imbalance of the last pass, and defects of contact laws, over the tolerances of the iterations.
@@ -95,13 +95,11 @@ impl Driver {
     }
 
     fn passes(&mut self, refined: &mut Refined) -> Result<(), Error> {
-        let tolerance = self.system.nonlinear.iteration.tolerance;
         let (mut enough, mut last) = (None, f64::INFINITY);
         for _ in 0..PASSES {
             let standing = self.stand_at(refined);
             let now = standing.imbalance;
-            let wanted = || f64::max(self.gain() * now, WITHIN * tolerance);
-            let enough = *enough.get_or_insert_with(wanted);
+            let enough = *enough.get_or_insert_with(|| self.enough(now));
             let obeys = standing.defect <= WITHIN;
             if obeys && (now <= enough.max(standing.rounding) || now > STALLED * last) {
                 break;
@@ -135,13 +133,15 @@ impl Driver {
         self.take_weak();
     }
 
-    /// Part of the imbalance of its first pass that the last pass of an iteration may leave: as much less than a tenth as the iteration
-    /// before has left, after which bodies leave less again.
-    fn gain(&self) -> f64 {
-        match self.residuals[..] {
-            [.., before, now] if now < before => LEFT * now / before,
-            _ => LEFT,
-        }
+    /// Imbalance at which passes may end, the first of which leaves this one: a tenth of it, and of what the error of the bodies will be,
+    /// c r² with the c of the iteration before.
+    fn enough(&self, first: f64) -> f64 {
+        let bodies = match self.residuals[..] {
+            [.., before, now] if now < before => now * (now / before).powi(2),
+            _ => first,
+        };
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        f64::max(LEFT * first.min(bodies), WITHIN * tolerance)
     }
 
     /// Goes to x + d, with the residual of linear bodies there.
