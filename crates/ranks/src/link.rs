@@ -22,7 +22,7 @@ pub(crate) trait Link: Send + Sync {
     /// Replaces numbers by their sums, and others by their largest, over all ranks: the same bits on all.
     fn reduce(&self, sums: &mut [f64], largest: &mut [f64]);
     /// Gives what the first rank has to all others.
-    fn broadcast(&self, bytes: &mut Vec<u8>);
+    fn broadcast(&self, values: &mut Vec<f64>);
 }
 
 /// The ranks of a run as one of them sees them.
@@ -109,9 +109,9 @@ impl Ranks {
     }
 
     /// Gives what the first rank has to all others.
-    pub fn broadcast(&self, bytes: &mut Vec<u8>) {
+    pub fn broadcast(&self, values: &mut Vec<f64>) {
         if let Some(link) = &self.link {
-            link.broadcast(bytes);
+            link.broadcast(values);
         }
     }
 
@@ -125,41 +125,33 @@ impl Ranks {
             return None;
         }
         let first = count - first[0] as usize;
-        let mut text = own
-            .filter(|_| rank == first)
-            .unwrap_or("")
-            .as_bytes()
-            .to_vec();
+        let own = own.filter(|_| rank == first).unwrap_or("");
+        let mut text: Vec<f64> = own.bytes().map(f64::from).collect();
         self.pass_to_first(first, &mut text);
         self.broadcast(&mut text);
-        Some((first, String::from_utf8_lossy(&text).into_owned()))
+        let bytes: Vec<u8> = text.iter().map(|byte| *byte as u8).collect();
+        Some((first, String::from_utf8_lossy(&bytes).into_owned()))
     }
 
-    /// Brings bytes of a rank to the first one.
-    fn pass_to_first(&self, from: usize, bytes: &mut Vec<u8>) {
+    /// Brings numbers of a rank to the first one.
+    fn pass_to_first(&self, from: usize, values: &mut Vec<f64>) {
         let rank = self.rank();
         if from == 0 || rank != 0 && rank != from {
             return;
         }
-        let number = |count: usize| Message {
-            with: if rank == 0 { from } else { 0 },
-            values: vec![0.0; count],
+        let message = |values: Vec<f64>| {
+            let with = if rank == 0 { from } else { 0 };
+            [Message { with, values }]
         };
-        let mut length = number(1);
         if rank == from {
-            length.values[0] = bytes.len() as f64;
-            self.exchange(&[length], &mut [], || ());
-            let mut text = number(bytes.len());
-            for (value, byte) in text.values.iter_mut().zip(bytes.iter()) {
-                *value = f64::from(*byte);
-            }
-            self.exchange(&[text], &mut [], || ());
+            self.exchange(&message(vec![values.len() as f64]), &mut [], || ());
+            self.exchange(&message(std::mem::take(values)), &mut [], || ());
         } else {
-            let mut length = [length];
+            let mut length = message(vec![0.0]);
             self.exchange(&[], &mut length, || ());
-            let mut text = [number(length[0].values[0] as usize)];
-            self.exchange(&[], &mut text, || ());
-            *bytes = text[0].values.iter().map(|value| *value as u8).collect();
+            let mut received = message(vec![0.0; length[0].values[0] as usize]);
+            self.exchange(&[], &mut received, || ());
+            *values = std::mem::take(&mut received[0].values);
         }
     }
 }

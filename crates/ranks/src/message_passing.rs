@@ -86,12 +86,12 @@ impl Link for World {
         }
     }
 
-    fn broadcast(&self, bytes: &mut Vec<u8>) {
+    fn broadcast(&self, values: &mut Vec<f64>) {
         let world = SimpleCommunicator::world();
         let first = world.process_at_rank(0);
-        let mut length = bytes.len() as u64;
+        let mut length = values.len() as u64;
         first.broadcast_into(&mut length);
-        bytes.resize(length as usize, 0);
-        first.broadcast_into(&mut bytes[..]);
+        values.resize(length as usize, 0.0);
+        first.broadcast_into(&mut values[..]);
     }
 }

@@ -5,17 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::link::{Link, Message, Ranks};
 
-/// What goes from one thread to another.
-enum Parcel {
-    Numbers(Vec<f64>),
-    Bytes(Vec<u8>),
-}
-
 /// The channels of one thread, by the other rank.
 struct Threads {
     rank: usize,
-    to: Vec<Sender<Parcel>>,
-    from: Vec<Mutex<Receiver<Parcel>>>,
+    to: Vec<Sender<Vec<f64>>>,
+    from: Vec<Mutex<Receiver<Vec<f64>>>>,
 }
 
 /// The ranks of so many threads, one for each of them. A thread that waits for one that has ended panics.
@@ -43,8 +37,8 @@ impl Threads {
         clippy::panic,
         reason = "a rank without the others cannot go on, as a process whose MPI ends"
     )]
-    fn send(&self, to: usize, parcel: Parcel) {
-        if self.to[to].send(parcel).is_err() {
+    fn send(&self, to: usize, values: Vec<f64>) {
+        if self.to[to].send(values).is_err() {
             panic!("rank {to} has ended");
         }
     }
@@ -53,19 +47,12 @@ impl Threads {
         clippy::panic,
         reason = "a rank without the others cannot go on, as a process whose MPI ends"
     )]
-    fn receive(&self, from: usize) -> Parcel {
+    fn receive(&self, from: usize) -> Vec<f64> {
         let receiver = self.from[from].lock();
         let received = receiver.unwrap_or_else(PoisonError::into_inner).recv();
         match received {
-            Ok(parcel) => parcel,
+            Ok(values) => values,
             Err(_) => panic!("rank {from} has ended"),
-        }
-    }
-
-    fn numbers(&self, from: usize) -> Vec<f64> {
-        match self.receive(from) {
-            Parcel::Numbers(values) => values,
-            Parcel::Bytes(_) => Vec::new(),
         }
     }
 }
@@ -77,26 +64,26 @@ impl Link for Threads {
 
     fn exchange(&self, sends: &[Message], receives: &mut [Message], meanwhile: &mut dyn FnMut()) {
         for message in sends {
-            self.send(message.with, Parcel::Numbers(message.values.clone()));
+            self.send(message.with, message.values.clone());
         }
         meanwhile();
         for message in receives {
             // a message of another length would be a defect of the program: it fails here
-            message.values.copy_from_slice(&self.numbers(message.with));
+            message.values.copy_from_slice(&self.receive(message.with));
         }
     }
 
     fn reduce(&self, sums: &mut [f64], largest: &mut [f64]) {
         let own: Vec<f64> = sums.iter().chain(largest.iter()).copied().collect();
         for to in (0..self.to.len()).filter(|to| *to != self.rank) {
-            self.send(to, Parcel::Numbers(own.clone()));
+            self.send(to, own.clone());
         }
         let count = sums.len();
         sums.fill(0.0);
         for from in 0..self.to.len() {
             let other = match from == self.rank {
                 true => own.clone(),
-                false => self.numbers(from),
+                false => self.receive(from),
             };
             for (sum, value) in sums.iter_mut().zip(&other) {
                 *sum += value;
@@ -107,13 +94,13 @@ impl Link for Threads {
         }
     }
 
-    fn broadcast(&self, bytes: &mut Vec<u8>) {
+    fn broadcast(&self, values: &mut Vec<f64>) {
         if self.rank == 0 {
             for to in 1..self.to.len() {
-                self.send(to, Parcel::Bytes(bytes.clone()));
+                self.send(to, values.clone());
             }
-        } else if let Parcel::Bytes(received) = self.receive(0) {
-            *bytes = received;
+        } else {
+            *values = self.receive(0);
         }
     }
 }
