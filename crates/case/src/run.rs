@@ -117,7 +117,7 @@ fn observed(
 }
 
 /// [`march`] or [`go_on`].
-type March = fn(
+pub(crate) type March = fn(
     &mut dyn Stepper,
     f64,
     &mut [&mut dyn Observer],

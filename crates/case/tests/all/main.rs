@@ -15,6 +15,7 @@ mod losses;
 mod means;
 mod offset;
 mod quadrature;
+mod ranks;
 mod reactions;
 mod reductions;
 mod reference;
