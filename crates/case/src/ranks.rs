@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Costs, Error, Observer, OnRanks, march, why_not_on_ranks};
+use carom_dynamics::{Costs, Error, Observer, OnRanks, RankShare, march, why_not_on_ranks};
 use carom_output::{Results, Settings, watched};
 use carom_ranks::Ranks;
 
@@ -65,14 +65,38 @@ pub(crate) fn go_through(
         false => Ok(None),
     };
     let Some(mut results) = together(ranks, results, Failed::Output)? else {
-        march(run.get_mut(), built.end, &mut [], &|| false).map_err(Failed::Step)?;
-        return Ok(None);
+        let outcome = march(run.get_mut(), built.end, &mut [], &|| false);
+        busiest(ranks, &run);
+        return outcome.map(|_| None).map_err(Failed::Step);
     };
     let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
     let outcome = march(run.get_mut(), built.end, observers, stop);
+    let share = busiest(ranks, &run);
     let zones = run.zones(built);
     let finished = conclude((results, outcome), (run.get(), zones), (now, built.end))?;
-    Ok(Some(finished))
+    Ok(Some(Finished {
+        ranks: Some(share),
+        ..finished
+    }))
+}
+
+/// The most that a rank has and sends.
+fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
+    let own = run.rank_share().unwrap_or_default();
+    let counts = [
+        own.elements as u64,
+        own.nodes as u64,
+        own.halo_bytes,
+        own.sent_bytes,
+    ];
+    let mut most = counts.map(|count| count as f64);
+    ranks.reduce(&mut [], &mut most);
+    RankShare {
+        elements: most[0] as usize,
+        nodes: most[1] as usize,
+        halo_bytes: most[2] as u64,
+        sent_bytes: most[3] as u64,
+    }
 }
 
 /// What all ranks have found, or the error of the first that has found none.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_dynamics::{Costs, Driver, Error, OnRanks, State, Stepper};
+use carom_dynamics::{Costs, Driver, Error, OnRanks, RankShare, State, Stepper};
 use carom_output::summary::Zones;
 use carom_ranks::Ranks;
 use carom_zones::Whole;
@@ -49,6 +49,14 @@ impl Stepping {
             Stepping::Apart(_) => Err(Error::NotOnRanks {
                 why: OnRanks::Scheme,
             }),
+        }
+    }
+
+    /// What this rank has and sends; none of a run in one process.
+    pub(crate) fn rank_share(&self) -> Option<RankShare> {
+        match self {
+            Stepping::One(driver) => driver.rank_share(),
+            Stepping::Apart(_) => None,
         }
     }
 

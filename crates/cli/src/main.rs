@@ -137,7 +137,11 @@ fn obey(arguments: Arguments) -> u8 {
     let takes = matches!(command, Command::Run(_) | Command::Resume(_));
     ranks::with_ranks(takes, |ranks| {
         if let Some(threads) = ranks::threads(ranks, threads) {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let mut pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            if ranks.count() > 1 {
+                // one of them is this one: it has nothing else to do, and MPI is its
+                pool = pool.use_current_thread();
+            }
             if let Err(error) = pool.build_global() {
                 err!("error: {error}");
                 return FAILED;

@@ -55,7 +55,9 @@ fn begun(takes: bool, work: impl FnOnce(&Ranks) -> u8) -> u8 {
     if std::env::var("OMPI_COMM_WORLD_RANK").is_ok_and(|rank| rank != "0") {
         be_silent();
     }
-    err!("error: this program was built without MPI; build it with `cargo build --release --features mpi`");
+    err!(
+        "error: this program was built without MPI; build it with `cargo build --release --features mpi`"
+    );
     BAD_INPUT
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::Finished;
+use carom_dynamics::RankShare;
 
 use carom_output::plot::quantity;
 use carom_output::summary::{Contact, Newton};
@@ -71,7 +72,12 @@ pub fn end(ended: Result<Option<Finished>, carom_case::Failed>, folder: &Path, j
         Ok(None) => 0,
         Ok(Some(finished)) => {
             match json.then(|| finished.summary.to_json()) {
-                None => print(&finished.summary, folder),
+                None => {
+                    print(&finished.summary, folder);
+                    if let Some(share) = &finished.ranks {
+                        out!("  {}", busiest(share));
+                    }
+                }
                 Some(Ok(text)) => out!("{text}"),
                 Some(Err(error)) => {
                     err!("error: {error}");
@@ -223,6 +229,20 @@ fn print(summary: &Summary, folder: &Path) {
     out!("  {}", verdict(summary));
     out!("  report: {}", folder.join("report.html").display());
     out!("  figures: {}", folder.join("plots").display());
+}
+
+/// What the busiest of several ranks had and sent.
+fn busiest(share: &RankShare) -> String {
+    let RankShare {
+        elements,
+        nodes,
+        halo_bytes,
+        sent_bytes,
+    } = share;
+    format!(
+        "ranks: at most {elements} elements and {nodes} nodes each, {halo_bytes} bytes sent a step and {:.3} MB in all",
+        *sent_bytes as f64 / 1e6
+    )
 }
 
 /// Contacts from which on those that never closed are not told one by one.

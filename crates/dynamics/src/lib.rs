@@ -49,7 +49,7 @@ pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tang
 pub use driver::linked;
 pub use driver::paired;
 pub use driver::record::contact_report;
-pub use driver::{Driver, why_not_on_ranks};
+pub use driver::{Driver, RankShare, why_not_on_ranks};
 pub use error::Error;
 pub use exchange::Exchange;
 pub use impact::{Impact, NoRestitution};

@@ -1,6 +1,6 @@
 //! The communication of a large partition, counted and not run: a cube of hexahedra whose elements `partition` shares out to ranks.
 //!
-//! The parts of a grid are boxes, and their cuts are found without a list of the elements. Printed are the elements, the neighbours and
+//! The parts of a grid for a power of two of ranks are boxes, up to a plane of elements, and their cuts are found without a list of the elements. Printed are the elements, the neighbours and
 //! the numbers of the busiest rank, and the predicted efficiency of explicit steps. `docs/src/ranks.md` says where the costs come from.
 //!
 //!     cargo run --release -p carom-ranks --example scale
@@ -69,26 +69,30 @@ fn busiest(parts: &[Part], every: usize) -> [u64; 2] {
 /// That boxes are the parts that [`partition`] makes, where these are boxes too.
 fn agrees(n: u64, ranks: usize) -> bool {
     let of = |k: u64| [k % n, k / n % n, k / n / n];
-    let points: Vec<[f64; 3]> = (0..n * n * n).map(|k| of(k).map(|i| i as f64 + 0.5)).collect();
+    let points: Vec<[f64; 3]> = (0..n * n * n)
+        .map(|k| of(k).map(|i| i as f64 + 0.5))
+        .collect();
     let found = partition(&points, &vec![1.0; points.len()], ranks);
     let mut parts = Vec::new();
     cut([[0, n]; 3], [0, ranks], &mut parts);
     (0..n * n * n).zip(&found).all(|(k, &part)| {
         let own = &parts[part as usize];
-        of(k).iter().zip(own).all(|(i, [from, to])| (from..to).contains(&i))
+        of(k)
+            .iter()
+            .zip(own)
+            .all(|(i, [from, to])| (from..to).contains(&i))
     })
 }
 
 fn main() {
-    assert!(agrees(8, 8) && agrees(12, 27) && agrees(16, 64), "boxes are not the parts");
-    println!("unknowns ranks elements neighbours bytes communication without_contacts with_contacts");
-    for (n, ranks) in [
-        (100, 1000),
-        (208, 1000),
-        (693, 1000),
-        (693, 10_000),
-        (693, 100_000),
-    ] {
+    assert!(
+        agrees(8, 8) && agrees(16, 32) && agrees(16, 64),
+        "boxes are not the parts"
+    );
+    println!(
+        "unknowns ranks elements neighbours bytes communication without_contacts with_contacts"
+    );
+    for (n, ranks) in [(149, 1024), (693, 1024), (693, 8192), (693, 131_072)] {
         let mut parts = Vec::new();
         cut([[0, n]; 3], [0, ranks], &mut parts);
         let elements = |part: &Part| part.iter().map(|[from, to]| to - from).product::<u64>();

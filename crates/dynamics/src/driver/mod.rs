@@ -102,6 +102,7 @@ use leapfrog::Direct;
 use linking::Multipliers;
 use mixing::Mixing;
 use paired::Manner;
+pub use ranked::RankShare;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
 pub use unfit::why_not_on_ranks;

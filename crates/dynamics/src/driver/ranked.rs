@@ -17,6 +17,19 @@ use crate::march::Going;
 use crate::shared::{Shared, Told, parts};
 use crate::update::Sums;
 
+/// What one of several ranks has of a run, and sends to others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RankShare {
+    /// Elements whose forces it computes.
+    pub elements: usize,
+    /// Nodes whose motion it computes, those included that others compute too.
+    pub nodes: usize,
+    /// Bytes that it sends in each step, by the count of these nodes.
+    pub halo_bytes: u64,
+    /// Bytes that it has sent so far: with what the first rank is given where impacts begin or end, and where somebody looks.
+    pub sent_bytes: u64,
+}
+
 impl Driver {
     /// Shares the run, whose state all ranks have, with others. `watched`: nodes (system numbers) whose motion the first rank is to have
     /// after each step; all ranks ask together.
@@ -48,11 +61,16 @@ impl Driver {
         self.several
     }
 
-    /// Bytes that this rank sends in each step by the count of its nodes, and that it has sent so far; none of a run in one process.
-    pub fn halo_bytes(&self) -> Option<[u64; 2]> {
+    /// What this rank has and sends; none of a run in one process.
+    pub fn rank_share(&self) -> Option<RankShare> {
         let shared = self.shared.as_ref()?;
-        let counted = shared.halo.bytes(self.system.dim, shared.ranks.rank());
-        Some([counted, shared.ranks.sent_bytes()])
+        let elements = shared.bodies().flatten();
+        Some(RankShare {
+            elements: elements.map(|share| share.places().len()).sum(),
+            nodes: shared.halo.present.len(),
+            halo_bytes: shared.halo.bytes(self.system.dim, shared.ranks.rank()),
+            sent_bytes: shared.ranks.sent_bytes(),
+        })
     }
 
     /// Takes the attempt on all ranks.

@@ -135,8 +135,10 @@ impl Driver {
     /// That the smallest part of a step, `dt` (s), is beyond what an element has for critical step.
     fn shortened(&self, dt: f64) -> Error {
         let (system, state) = (&*self.system, &self.state);
-        let bound = system.critical_step_at(&state.motion);
-        let cell = bound.ok().and_then(|(_, bound)| bound.cell);
+        // of several ranks none has all elements as they are now
+        let whole = !self.is_shared();
+        let bound = whole.then(|| system.critical_step_at(&state.motion).ok());
+        let cell = bound.flatten().and_then(|(_, bound)| bound.cell);
         let owns = |body: &&Body| cell.is_some_and(|cell| body.cells().contains(&cell));
         let body = system.bodies.iter().find(owns);
         Error::Shortened {

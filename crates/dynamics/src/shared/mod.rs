@@ -251,7 +251,9 @@ impl Shared {
             let entries = support.linear.iter_mut().chain(&mut support.angular);
             entries.for_each(|entry| *entry = next());
         }
-        energies(stored).map(|energy| *energy = next());
+        for energy in energies(stored) {
+            *energy = next();
+        }
         stored.compression = largest.next().unwrap_or_default();
         let mut flag = || largest.next().is_some_and(|flag| flag != 0.0);
         Told {
