@@ -23,14 +23,21 @@ fn the_forces_of_shares_are_those_of_the_body() {
     };
     let laws = [
         (MATERIAL.into(), Formulation::Full),
-        (Law::NeoHooke(NeoHooke { initial: MATERIAL }), Formulation::BBar),
+        (
+            Law::NeoHooke(NeoHooke { initial: MATERIAL }),
+            Formulation::BBar,
+        ),
         (Law::J2Plasticity(plastic), Formulation::Full),
     ];
     for (law, formulation) in laws {
         let cube = generate::box_("b", [0.0; 3], [1.0; 3], [8; 3], false);
         let sample = Sample::of("cube", cube, Kinematics::Solid, law, formulation);
         assert_eq!(sample.body.not_shared(), None);
-        let u: Vec<f64> = Random(3).vector(sample.n).iter().map(|u| 0.01 * u).collect();
+        let u: Vec<f64> = Random(3)
+            .vector(sample.n)
+            .iter()
+            .map(|u| 0.01 * u)
+            .collect();
         let kept = sample.body.history_len();
         let mut old = vec![0.0; kept];
         sample.body.start_history(&mut old);
@@ -43,7 +50,10 @@ fn the_forces_of_shares_are_those_of_the_body() {
             old: &old,
         };
         let (mut new, mut f) = (vec![0.0; kept], vec![0.0; sample.n]);
-        let whole = sample.body.force(&at, &mut new, &mut Scratch::default(), &mut f).unwrap();
+        let whole = sample
+            .body
+            .force(&at, &mut new, &mut Scratch::default(), &mut f)
+            .unwrap();
         let (mut found, mut sum) = (vec![f64::NAN; kept], vec![0.0; sample.n]);
         let mut stored = Stored::default();
         for mut share in shares(&sample) {
@@ -54,7 +64,10 @@ fn the_forces_of_shares_are_those_of_the_body() {
         for (a, b) in f.iter().zip(&sum) {
             assert!((a - b).abs() < 1e-13 * most, "{law:?}: {a} {b}");
         }
-        assert!((whole.strain - stored.strain).abs() < 1e-13 * whole.strain, "{law:?}");
+        assert!(
+            (whole.strain - stored.strain).abs() < 1e-13 * whole.strain,
+            "{law:?}"
+        );
         assert_eq!(new, found, "{law:?}");
         let elements: usize = sample.body.kept_of_elements().sum();
         assert_eq!(elements, kept);
