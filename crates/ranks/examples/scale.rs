@@ -10,7 +10,7 @@
 use carom_ranks::partition;
 
 /// Seconds of one processor for an element in a step, all in all, and for a contact point that is far or closed.
-const ELEMENT: f64 = 0.35e-6;
+const ELEMENT: f64 = 0.5e-6;
 const POINT: f64 = 0.05e-6;
 /// Seconds for a message, and bytes a second to and from a rank: of the networks of present clusters.
 const LATENCY: f64 = 2e-6;
