@@ -27,6 +27,10 @@ struct Watched {
     lengths: Vec<f64>,
 }
 
+/// Distortion of a body, by its number, at a displacement (m), by the number of the look; that found before where it is larger.
+pub(crate) type DistortionOf<'a> =
+    dyn Fn(usize, (&[f64], usize), &Distortion) -> Option<Distortion> + 'a;
+
 impl Watch {
     pub(crate) fn new(system: &System) -> Watch {
         let mut still = Vec::new();
@@ -51,12 +55,7 @@ impl Watch {
 
     /// Looks at a state. `distortion`: of a body at a displacement, by the number of the look, or what was found before where that is
     /// larger.
-    pub(crate) fn look(
-        &mut self,
-        system: &System,
-        distortion: &dyn Fn(usize, (&[f64], usize), &Distortion) -> Option<Distortion>,
-        state: &mut State,
-    ) {
+    pub(crate) fn look(&mut self, system: &System, distortion: &DistortionOf, state: &mut State) {
         let energy = state.ledger.balance.strain;
         let found = &mut state.records.small;
         found.looks += 1;

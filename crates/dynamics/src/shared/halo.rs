@@ -90,7 +90,7 @@ impl Halo {
         let (own, root) = (have.contains(&rank), rank == 0);
         let outside = touches && !have.contains(&0);
         let own_or_touched = own || touches && root;
-        if !own_or_touched && !(have.is_empty() && root) {
+        if !(own_or_touched || have.is_empty() && root) {
             return;
         }
         self.present.push(node);
