@@ -214,6 +214,26 @@ impl Shared {
         }
     }
 
+    /// Brings the motion of the watched nodes to the first rank.
+    pub(crate) fn watch(&mut self, dim: usize, motion: &mut Motion) {
+        self.whole.watch(&self.ranks, dim, motion);
+    }
+
+    /// Brings the velocities of all nodes at the start and the end of a step to the first rank.
+    pub(crate) fn gather_velocities(&mut self, dim: usize, velocities: [&mut [f64]; 2]) {
+        self.whole.gather_velocities(&self.ranks, dim, velocities);
+    }
+
+    /// Brings the motion of all nodes and the histories of all elements to the first rank.
+    pub(crate) fn gather(&mut self, dim: usize, motion: &mut Motion) {
+        self.whole.gather(&self.ranks, dim, motion);
+    }
+
+    /// Brings displacements, velocities and histories of all to all ranks.
+    pub(crate) fn spread(&mut self, dim: usize, motion: &mut Motion) {
+        self.whole.spread(&self.ranks, dim, motion);
+    }
+
     /// Sums the parts, the energies and the forces of supports of a step over the ranks, and tells whether it has `failed` on any, or an
     /// impact begins or ends.
     pub(crate) fn sum_up(

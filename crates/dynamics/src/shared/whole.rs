@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use carom_ranks::{Message, Ranks};
 
-use super::Shared;
 use super::halo::{Halo, Parts, With, contact_nodes, pack, unpack};
 use crate::system::{Motion, System};
 
@@ -94,28 +93,33 @@ fn histories(system: &System, parts: &Parts, rank: usize) -> Vec<(usize, Vec<Ran
     lists
 }
 
-impl Shared {
+impl Whole {
     /// Brings the motion of the watched nodes to the first rank.
-    pub(crate) fn watch(&mut self, dim: usize, motion: &mut Motion) {
+    pub(super) fn watch(&mut self, ranks: &Ranks, dim: usize, motion: &mut Motion) {
         let vectors = &mut [&mut motion.u[..], &mut motion.v, &mut motion.a];
-        let Whole { watched, room, .. } = &mut self.whole;
-        collect(&self.ranks, (watched, room), dim, vectors);
+        let Whole { watched, room, .. } = self;
+        collect(ranks, (watched, room), dim, vectors);
     }
 
     /// Brings the velocities of all nodes at the start and the end of a step to the first rank.
-    pub(crate) fn gather_velocities(&mut self, dim: usize, velocities: [&mut [f64]; 2]) {
-        let Whole { all, room, .. } = &mut self.whole;
-        collect(&self.ranks, (all, room), dim, &mut { velocities });
+    pub(super) fn gather_velocities(
+        &mut self,
+        ranks: &Ranks,
+        dim: usize,
+        velocities: [&mut [f64]; 2],
+    ) {
+        let Whole { all, room, .. } = self;
+        collect(ranks, (all, room), dim, &mut { velocities });
     }
 
     /// Brings the motion of all nodes and the histories of all elements to the first rank.
-    pub(crate) fn gather(&mut self, dim: usize, motion: &mut Motion) {
+    pub(super) fn gather(&mut self, ranks: &Ranks, dim: usize, motion: &mut Motion) {
         let Whole {
             all,
             histories,
             room,
             ..
-        } = &mut self.whole;
+        } = self;
         let Motion {
             u,
             v,
@@ -126,13 +130,13 @@ impl Shared {
             ..
         } = motion;
         let vectors = &mut [&mut u[..], v, a, internal_force, contact_force];
-        collect(&self.ranks, (all, room), dim, vectors);
+        collect(ranks, (all, room), dim, vectors);
         let message = |(with, ranges): &(usize, Vec<Range<usize>>)| Message {
             with: *with,
             values: vec![0.0; ranges.iter().map(ExactSizeIterator::len).sum()],
         };
         let mut messages: Vec<Message> = histories.iter().map(message).collect();
-        let is_first = self.ranks.is_first();
+        let is_first = ranks.is_first();
         let mut each = |messages: &mut [Message]| {
             for (message, (_, ranges)) in messages.iter_mut().zip(&*histories) {
                 let mut values = &mut message.values[..];
@@ -147,19 +151,19 @@ impl Shared {
             }
         };
         if is_first {
-            self.ranks.exchange(&[], &mut messages, || ());
+            ranks.exchange(&[], &mut messages, || ());
             each(&mut messages);
         } else {
             each(&mut messages);
-            self.ranks.exchange(&messages, &mut [], || ());
+            ranks.exchange(&messages, &mut [], || ());
         }
     }
 
     /// Brings displacements, velocities and histories of all to all ranks.
-    pub(crate) fn spread(&mut self, dim: usize, motion: &mut Motion) {
-        self.gather(dim, motion);
+    pub(super) fn spread(&mut self, ranks: &Ranks, dim: usize, motion: &mut Motion) {
+        self.gather(ranks, dim, motion);
         for vector in [&mut motion.u, &mut motion.v, &mut motion.history] {
-            self.ranks.broadcast(vector);
+            ranks.broadcast(vector);
         }
     }
 }
