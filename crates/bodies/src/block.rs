@@ -21,7 +21,7 @@ use crate::single;
 use crate::weights::{CellWeights, ChunkWeights, ElementWeights, Unweighted, WIDEST, Weight};
 
 /// Elements per chunk, whatever the number of threads: about 30 microseconds of work.
-fn chunk_length(kind: Kind) -> usize {
+pub(crate) fn chunk_length(kind: Kind) -> usize {
     let element = kind.table();
     match (element.dim, element.nodes) {
         (0 | 1, _) => 4096,
@@ -82,7 +82,7 @@ pub(crate) struct Block {
     pub(crate) kind: Kind,
     pub(crate) physics: Physics,
     pub(crate) stiffness_points: Points,
-    mass_points: Points,
+    pub(crate) mass_points: Points,
     pub(crate) chunks: Vec<Chunk>,
 }
 

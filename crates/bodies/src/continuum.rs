@@ -11,13 +11,13 @@ use carom_materials::{Elastic, Plane};
 use crate::Kinematics;
 
 /// Shape functions and reference gradients at the points of a rule, evaluated once per block.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Points {
     pub(crate) points: Vec<Point>,
 }
 
 /// Weight, N_a and dN_a/dξ at one point of a rule.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Point {
     pub(crate) weight: f64,
     pub(crate) n: [f64; MAX_NODES],

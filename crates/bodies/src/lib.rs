@@ -26,6 +26,7 @@ mod release;
 mod rigid;
 mod scaling;
 mod scratch;
+mod share;
 mod shell;
 mod single;
 mod size;
@@ -58,6 +59,7 @@ pub use release::Release;
 pub use rigid::{Inertia, Rigid};
 pub use scaling::{MARGIN, MassScaling};
 pub use scratch::Scratch;
+pub use share::{NotShared, Share};
 pub use shell::{
     LAYERS as SHELL_LAYERS, Ply, Resultants, Shell, ShellDefect, ShellPlate, ShellSection, plates,
     shell_defects,

@@ -99,20 +99,20 @@ impl BodySpec {
 /// A discretised solid or bar, at small strain or total Lagrangian.
 #[derive(Debug)]
 pub struct Solid {
-    name: String,
-    kinematics: Kinematics,
-    material: Law,
-    cells: Vec<ElementId>,
+    pub(crate) name: String,
+    pub(crate) kinematics: Kinematics,
+    pub(crate) material: Law,
+    pub(crate) cells: Vec<ElementId>,
     pub(crate) blocks: Vec<Block>,
     /// Law and formulation at finite strain; none at small strain.
     pub(crate) finite: Option<Finite>,
     /// Bars of metal that flows.
     pub(crate) flowing: Option<Flowing>,
-    dim: usize,
-    smallest: f64,
+    pub(crate) dim: usize,
+    pub(crate) smallest: f64,
     pub(crate) viscosity: Option<BulkViscosity>,
     /// Mass beyond that of the material, kg.
-    added_mass: f64,
+    pub(crate) added_mass: f64,
     /// How the forces of chunks are added.
     pub(crate) gather: Gather,
 }

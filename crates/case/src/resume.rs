@@ -1,16 +1,20 @@
 //! Going on with a run from the checkpoint in its results folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use carom_dynamics::{Observer, Stepper};
+use std::sync::Arc;
+
+use carom_dynamics::{Observer, Stepper, go_on};
 use carom_output::checkpoint::{self, Checkpoint};
-use carom_output::{Error, Folder};
+use carom_output::{Error, Folder, Results};
+use carom_ranks::Ranks;
 
 use crate::build::{Built, build};
 use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::origin::Origin;
 use crate::parse::parse;
+use crate::ranks::{go_through, refused_on_ranks, shared};
 use crate::run::{Begin, Failed, Finished, comments, march_from, settings};
 use crate::schema::Case;
 
@@ -20,7 +24,9 @@ pub struct Resume {
     case: Case,
     /// The case as built.
     pub built: Built,
-    folder: Folder,
+    /// The folder, which no other run may open; none on other ranks than the first.
+    folder: Option<Folder>,
+    path: PathBuf,
     checkpoint: Box<Checkpoint>,
     origin: Origin,
     /// Why newer checkpoints are not used.
@@ -58,6 +64,22 @@ impl Resume {
     /// another model, with each key that differs.
     pub fn open(path: &Path, overrides: &[String]) -> Result<Resume, NotResumed> {
         let folder = Folder::open(path).map_err(NotResumed::Folder)?;
+        Resume::read(path, overrides, Some(folder))
+    }
+
+    /// The same on a rank that writes no results, while the first one has opened the folder.
+    ///
+    /// # Errors
+    /// As [`Resume::open`], but for the folder.
+    pub fn open_beside(path: &Path, overrides: &[String]) -> Result<Resume, NotResumed> {
+        Resume::read(path, overrides, None)
+    }
+
+    fn read(
+        path: &Path,
+        overrides: &[String],
+        folder: Option<Folder>,
+    ) -> Result<Resume, NotResumed> {
         let (checkpoint, unusable) = checkpoint::latest(path).map_err(NotResumed::Folder)?;
         let mut origin: Origin = serde_json::from_str(&checkpoint.origin)
             .map_err(|cause| Error::Checkpoint {
@@ -90,6 +112,7 @@ impl Resume {
             case,
             built,
             folder,
+            path: path.to_owned(),
             checkpoint: Box::new(checkpoint),
             origin,
             unusable,
@@ -107,9 +130,15 @@ impl Resume {
     /// # Errors
     /// As [`run`](crate::run()).
     pub fn report(self) -> Result<Finished, Failed> {
-        let path = self.folder.path().to_owned();
-        let settings = settings((&self.input, &self.case, &self.built), path, &self.origin);
-        let begin = Begin::Review(self.checkpoint, self.folder);
+        let settings = settings(
+            (&self.input, &self.case, &self.built),
+            self.path,
+            &self.origin,
+        );
+        let Some(folder) = self.folder else {
+            return Err(Failed::Start(carom_dynamics::Error::FirstRank));
+        };
+        let begin = Begin::Review(self.checkpoint, folder);
         let stop = &|| false;
         march_from((&self.built, settings), begin, &mut Silent, stop)
     }
@@ -124,9 +153,53 @@ impl Resume {
         stop: &dyn Fn() -> bool,
     ) -> Result<Finished, Failed> {
         let origin = self.origin.of_the_rest(&self.input, &self.case);
-        let path = self.folder.path().to_owned();
-        let settings = settings((&self.input, &self.case, &self.built), path, &origin);
-        let begin = Begin::Checkpoint(self.checkpoint, self.folder);
+        let settings = settings((&self.input, &self.case, &self.built), self.path, &origin);
+        let Some(folder) = self.folder else {
+            return Err(Failed::Start(carom_dynamics::Error::FirstRank));
+        };
+        let begin = Begin::Checkpoint(self.checkpoint, folder);
         march_from((&self.built, settings), begin, progress, stop)
+    }
+
+    /// The same on several ranks, which have all opened it; what the first one has to tell.
+    ///
+    /// # Errors
+    /// As [`run_on_ranks`](crate::run_on_ranks).
+    pub fn run_on_ranks(
+        self,
+        ranks: &Ranks,
+        progress: &mut dyn Observer,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Option<Finished>, Failed> {
+        let origin = self.origin.of_the_rest(&self.input, &self.case);
+        let settings = settings((&self.input, &self.case, &self.built), self.path, &origin);
+        let state = Some(&self.checkpoint.state[..]);
+        let costs = self.checkpoint.costs()?;
+        let run = shared((ranks, &self.built, &settings), state, &costs)?;
+        let checkpoint = self.checkpoint;
+        let results = || match self.folder {
+            Some(folder) => Results::resume(
+                folder,
+                &checkpoint,
+                settings,
+                Arc::clone(&self.built.system),
+            ),
+            None => Err(Error::NoResults {
+                path: PathBuf::new(),
+            }),
+        };
+        go_through(
+            (ranks, &self.built),
+            (run, go_on),
+            results,
+            (progress, stop),
+        )
+    }
+
+    /// What of the case several ranks do not take, at its place.
+    pub fn refused_on_ranks(&self) -> Option<(Vec<Source>, Problem)> {
+        let (_, locator) = parse(&self.input).ok()?;
+        let problem = refused_on_ranks(&self.case, &self.built)?;
+        Some((self.input.sources.clone(), locator.locate(problem)))
     }
 }

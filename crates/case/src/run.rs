@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Observer, Outcome, Stepper, go_on, is_at_end, march};
+use carom_dynamics::{Observer, Outcome, RankShare, Stepper, go_on, is_at_end, march};
 use carom_output::checkpoint::Checkpoint;
 use carom_output::summary::Zones;
 use carom_output::{
@@ -28,6 +28,8 @@ pub struct Finished {
     pub summary: Summary,
     /// Whether somebody stopped it before its end time.
     pub interrupted: bool,
+    /// What the busiest of several ranks had and sent; none of one process.
+    pub ranks: Option<RankShare>,
 }
 
 /// Why a run did not come to its end.
@@ -117,7 +119,7 @@ fn observed(
 }
 
 /// [`march`] or [`go_on`].
-type March = fn(
+pub(crate) type March = fn(
     &mut dyn Stepper,
     f64,
     &mut [&mut dyn Observer],
@@ -163,6 +165,7 @@ pub(crate) fn conclude(
     Ok(Finished {
         summary: summary?,
         interrupted: outcome == Outcome::Interrupted,
+        ranks: None,
     })
 }
 

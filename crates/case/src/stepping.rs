@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use carom_dynamics::{Costs, Driver, Error, State, Stepper};
+use carom_dynamics::{Costs, Driver, Error, OnRanks, RankShare, State, Stepper};
 use carom_output::summary::Zones;
+use carom_ranks::Ranks;
 use carom_zones::Whole;
 
 use crate::build::Built;
@@ -36,6 +37,27 @@ impl Stepping {
                 .and_then(|state| Driver::resume(Arc::clone(&system), state)),
         };
         Ok(Stepping::One(Box::new(driver?)))
+    }
+
+    /// Shares the run with other ranks; `watched`: nodes whose motion the first rank follows.
+    ///
+    /// # Errors
+    /// A model that several ranks do not take.
+    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
+        match self {
+            Stepping::One(driver) => driver.share(ranks, watched),
+            Stepping::Apart(_) => Err(Error::NotOnRanks {
+                why: OnRanks::Scheme,
+            }),
+        }
+    }
+
+    /// What this rank has and sends; none of a run in one process.
+    pub(crate) fn rank_share(&self) -> Option<RankShare> {
+        match self {
+            Stepping::One(driver) => driver.rank_share(),
+            Stepping::Apart(_) => None,
+        }
     }
 
     /// Adds what the run has cost before it was cut.

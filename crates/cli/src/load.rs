@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::path::Path;
 
 use carom_case::{Built, Input, Problem};
+use carom_ranks::Ranks;
 
 use crate::exit::BAD_INPUT;
 use crate::terminal::err;
@@ -12,6 +13,23 @@ use crate::{diagnostics, terminal};
 /// Reads and builds a case, or prints all its problems.
 pub fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
     load_with(case, set, |_| Ok(()))
+}
+
+/// As [`load`], for several ranks if there are: what they do not take is a problem too.
+pub fn load_for(
+    ranks: &Ranks,
+    case: &Path,
+    set: &[String],
+) -> Result<(Input, carom_case::schema::Case, Built), u8> {
+    let (input, parsed, built) = load(case, set)?;
+    if ranks.count() > 1
+        && let Some(problem) = carom_case::refused_on_ranks(&parsed, &built)
+    {
+        let located = carom_case::parse(&input).map(|(_, locator)| locator.locate(problem));
+        let problems = located.map_or_else(|problems| problems, |problem| vec![problem]);
+        return Err(refuse(&input.sources, &problems));
+    }
+    Ok((input, parsed, built))
 }
 
 /// As [`load`]; `keep` sees the problems after they are printed.

@@ -11,6 +11,7 @@ mod load;
 mod modes;
 mod new;
 mod progress;
+mod ranks;
 mod report;
 mod resume;
 mod run;
@@ -24,6 +25,7 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use carom_ranks::Ranks;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::exit::{BAD_INPUT, FAILED};
@@ -133,16 +135,27 @@ fn obey(arguments: Arguments) -> u8 {
         .with_ansi(std::io::stderr().is_terminal())
         .with_writer(|| terminal::StandardError)
         .init();
-    if let Some(threads) = threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.get());
-        if let Err(error) = pool.build_global() {
-            err!("error: {error}");
-            return FAILED;
+    let takes = matches!(command, Command::Run(_) | Command::Resume(_));
+    ranks::with_ranks(takes, |ranks| {
+        if let Some(threads) = ranks::threads(ranks, threads) {
+            let mut pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            if ranks.count() > 1 {
+                // one of them is this one: it has nothing else to do, and MPI is its
+                pool = pool.use_current_thread();
+            }
+            if let Err(error) = pool.build_global() {
+                err!("error: {error}");
+                return FAILED;
+            }
         }
-    }
+        commanded(command, ranks)
+    })
+}
+
+fn commanded(command: Command, ranks: &Ranks) -> u8 {
     match command {
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Resume(arguments) => resume::resume(&arguments),
+        Command::Run(arguments) => run::run(&arguments, ranks),
+        Command::Resume(arguments) => resume::resume(&arguments, ranks),
         Command::Report(arguments) => report::report(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Study(arguments) => study::study(&arguments),

@@ -47,6 +47,10 @@ impl Observer for Progress {
         Ok(())
     }
 
+    fn looks(&self, _: &dyn Stepper) -> bool {
+        false
+    }
+
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), Error> {
         self.show(run.state().time);
         self.bar.finish_and_clear();

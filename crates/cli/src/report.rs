@@ -27,5 +27,5 @@ pub fn report(arguments: &Arguments) -> u8 {
     let (step, time) = run.instant();
     let time = quantity(time, "s");
     err!("report of the checkpoint of step {step} at {time}");
-    end(run.report(), &arguments.folder, arguments.json)
+    end(run.report().map(Some), &arguments.folder, arguments.json)
 }

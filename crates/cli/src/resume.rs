@@ -5,9 +5,11 @@ use std::path::{Path, PathBuf};
 use carom_case::{NotResumed, Resume};
 use carom_output::Error;
 use carom_output::plot::quantity;
+use carom_ranks::Ranks;
 
 use crate::exit::{BAD_INPUT, FAILED};
 use crate::load::refuse;
+use crate::ranks::all_have;
 use crate::run::{end, until_stopped};
 use crate::terminal::{err, line};
 
@@ -31,20 +33,36 @@ pub struct Arguments {
 }
 
 /// Goes on with a run; returns the exit code.
-pub fn resume(arguments: &Arguments) -> u8 {
+pub fn resume(arguments: &Arguments, ranks: &Ranks) -> u8 {
     let until = arguments.until.iter().map(|end| format!("time.end={end}"));
     let overrides: Vec<String> = arguments.set.iter().cloned().chain(until).collect();
-    let run = match open(&arguments.folder, &overrides) {
+    let run = match all_have(ranks, open_on(ranks, &arguments.folder, &overrides)) {
         Ok(run) => run,
         Err(code) => return code,
     };
     let (step, time) = run.instant();
     let time = quantity(time, "s");
     err!("going on from the checkpoint of step {step} at {time}");
-    let ended = until_stopped(run.built.end, arguments.quiet, |progress, stop| {
-        run.run(progress, stop)
+    let quiet = arguments.quiet || !ranks.is_first();
+    let ended = until_stopped(run.built.end, quiet, |progress, stop| match ranks.count() {
+        1 => run.run(progress, stop).map(Some),
+        _ => run.run_on_ranks(ranks, progress, stop),
     });
     end(ended, &arguments.folder, arguments.json)
+}
+
+/// As [`open`], on each of several ranks if there are.
+fn open_on(ranks: &Ranks, folder: &Path, overrides: &[String]) -> Result<Resume, u8> {
+    let run = match ranks.is_first() {
+        true => open(folder, overrides)?,
+        false => Resume::open_beside(folder, overrides).map_err(|_| BAD_INPUT)?,
+    };
+    if ranks.count() > 1
+        && let Some((sources, problem)) = run.refused_on_ranks()
+    {
+        return Err(refuse(&sources, &[problem]));
+    }
+    Ok(run)
 }
 
 /// The run of a results folder at its newest checkpoint that can be used; else the exit code, after the cause is told.

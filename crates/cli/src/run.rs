@@ -6,14 +6,17 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::Finished;
+use carom_dynamics::RankShare;
 
 use carom_output::plot::quantity;
 use carom_output::summary::{Contact, Newton};
 use carom_output::{Grade, Level, Summary};
+use carom_ranks::Ranks;
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
-use crate::load::load;
+use crate::load::load_for;
 use crate::progress::Progress;
+use crate::ranks::all_have;
 use crate::terminal::{err, line, out};
 
 /// Arguments of `carom run`.
@@ -36,8 +39,9 @@ pub struct Arguments {
 }
 
 /// Runs a case; returns the exit code.
-pub fn run(arguments: &Arguments) -> u8 {
-    let (input, case, built) = match load(&arguments.case, &arguments.set) {
+pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
+    let loaded = load_for(ranks, &arguments.case, &arguments.set);
+    let (input, case, built) = match all_have(ranks, loaded) {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
@@ -51,18 +55,29 @@ pub fn run(arguments: &Arguments) -> u8 {
         .results
         .clone()
         .unwrap_or_else(|| arguments.case.with_extension("carom"));
-    let ended = until_stopped(built.end, arguments.quiet, |progress, stop| {
-        carom_case::run((&input, &case, &built), folder.clone(), progress, stop)
+    let quiet = arguments.quiet || !ranks.is_first();
+    let ended = until_stopped(built.end, quiet, |progress, stop| {
+        let case = (&input, &case, &built);
+        match ranks.count() {
+            1 => carom_case::run(case, folder.clone(), progress, stop).map(Some),
+            _ => carom_case::run_on_ranks(ranks, case, folder.clone(), progress, stop),
+        }
     });
     end(ended, &folder, arguments.json)
 }
 
-/// Tells how a run ended, by its summary as JSON if `json` says so; returns the exit code.
-pub fn end(ended: Result<Finished, carom_case::Failed>, folder: &Path, json: bool) -> u8 {
+/// Tells how a run ended, by its summary as JSON if `json` says so; returns the exit code. Another rank than the first has nothing to tell.
+pub fn end(ended: Result<Option<Finished>, carom_case::Failed>, folder: &Path, json: bool) -> u8 {
     match ended {
-        Ok(finished) => {
+        Ok(None) => 0,
+        Ok(Some(finished)) => {
             match json.then(|| finished.summary.to_json()) {
-                None => print(&finished.summary, folder),
+                None => {
+                    print(&finished.summary, folder);
+                    if let Some(share) = &finished.ranks {
+                        out!("  {}", busiest(share));
+                    }
+                }
                 Some(Ok(text)) => out!("{text}"),
                 Some(Err(error)) => {
                     err!("error: {error}");
@@ -214,6 +229,20 @@ fn print(summary: &Summary, folder: &Path) {
     out!("  {}", verdict(summary));
     out!("  report: {}", folder.join("report.html").display());
     out!("  figures: {}", folder.join("plots").display());
+}
+
+/// What the busiest of several ranks had and sent.
+fn busiest(share: &RankShare) -> String {
+    let RankShare {
+        elements,
+        nodes,
+        halo_bytes,
+        sent_bytes,
+    } = share;
+    format!(
+        "ranks: at most {elements} elements and {nodes} nodes each, {halo_bytes} bytes sent a step and {:.3} MB in all",
+        *sent_bytes as f64 / 1e6
+    )
 }
 
 /// Contacts from which on those that never closed are not told one by one.

@@ -11,6 +11,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::io::{self, ErrorKind, Write};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::exit::FAILED;
 
@@ -36,8 +37,19 @@ macro_rules! err {
 
 pub(crate) use {err, out};
 
+/// Whether this process tells nothing: another one of the same run does.
+static SILENT: AtomicBool = AtomicBool::new(false);
+
+/// Tells nothing from here on.
+pub fn be_silent() {
+    SILENT.store(true, Ordering::Relaxed);
+}
+
 /// Writes text to standard output, with control characters made visible.
 pub fn write_out(text: fmt::Arguments) {
+    if SILENT.load(Ordering::Relaxed) {
+        return;
+    }
     let text = text.to_string();
     keep(io::stdout().write_all(visible(&text).as_bytes()));
 }
@@ -50,7 +62,9 @@ pub fn write_err(text: fmt::Arguments) {
 
 /// Writes text to standard error as it is, with the colours of whoever made it and made the rest of it [`visible`].
 pub fn write_styled(text: &str) {
-    let _ = io::stderr().write_all(text.as_bytes());
+    if !SILENT.load(Ordering::Relaxed) {
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
 }
 
 /// Keeps the first failure of standard output.

@@ -34,6 +34,22 @@ pub(crate) struct Block {
     pub(crate) held: bool,
     /// Whether there may be contact forces on them at the start and at the end of the step.
     pub(crate) touched: [bool; 2],
+    /// Whether its sums count here; not where those of another process do.
+    pub(crate) counts: bool,
+}
+
+impl Block {
+    /// Of nodes that follow each other in a part; whether they count.
+    fn new(system: &System, [first, last]: [usize; 2], part: usize, counts: bool) -> Block {
+        let dim = system.dim;
+        Block {
+            nodes: [first, last],
+            part,
+            held: system.fixed[dim * first..dim * last].contains(&true),
+            touched: [true; 2],
+            counts,
+        }
+    }
 }
 
 /// The blocks of a system whose nodes have translations alone.
@@ -43,15 +59,33 @@ pub(crate) fn blocks(system: &System) -> Vec<Block> {
         let (begin, end) = (unknowns.start / dim, unknowns.end / dim);
         (begin..end).step_by(NODES).map(move |first| {
             let last = end.min(first + NODES);
-            Block {
-                nodes: [first, last],
-                part,
-                held: system.fixed[dim * first..dim * last].contains(&true),
-                touched: [true; 2],
-            }
+            Block::new(system, [first, last], part, true)
         })
     };
     system.parts.iter().enumerate().flat_map(of_part).collect()
+}
+
+/// The blocks of some nodes, ascending, of such a system; `counts`: whether the sums of a node are taken.
+pub(crate) fn blocks_of(
+    system: &System,
+    nodes: &[u32],
+    counts: &dyn Fn(usize) -> bool,
+) -> Vec<Block> {
+    let (dim, mut blocks) = (system.dim, Vec::new());
+    let mut rest = nodes;
+    while let Some(&first) = rest.first() {
+        let first = first as usize;
+        let (part, counted) = (system.part_of(dim * first), counts(first));
+        let end = system.parts[part].end / dim;
+        let follows = |&(k, &node): &(usize, &u32)| {
+            let node = node as usize;
+            node == first + k && node < end && k < NODES && counts(node) == counted
+        };
+        let length = rest.iter().enumerate().take_while(follows).count();
+        blocks.push(Block::new(system, [first, first + length], part, counted));
+        rest = &rest[length..];
+    }
+    blocks
 }
 
 /// A vector of the unknowns of a block; zero behind them.

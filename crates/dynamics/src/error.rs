@@ -2,6 +2,8 @@
 
 use thiserror::Error as ThisError;
 
+use crate::on_ranks::OnRanks;
+
 /// Errors of this crate.
 #[derive(Debug, ThisError)]
 pub enum Error {
@@ -192,6 +194,23 @@ pub enum Error {
         /// The motion.
         motion: String,
     },
+    /// A model that several ranks do not take.
+    #[error("several ranks take no {why}; run it in one process")]
+    NotOnRanks {
+        /// What they do not take.
+        why: OnRanks,
+    },
+    /// A step failed on one of several ranks, and so on all.
+    #[error("rank {rank}: {cause}")]
+    OnRank {
+        /// The first rank on which it failed.
+        rank: usize,
+        /// Its error, in words.
+        cause: String,
+    },
+    /// The first rank ended the run: its results could not be written.
+    #[error("rank 0 could not write the results")]
+    FirstRank,
     /// A saved state that does not belong to this system.
     #[error("the saved state cannot be read: {cause}")]
     State {

@@ -32,6 +32,25 @@ pub trait Stepper {
     fn costs(&self) -> Costs;
     /// The contact problem that made the last step fail.
     fn failed_problem(&self) -> Option<FailedProblem<'_>>;
+    /// Whether the run goes on: where several processes take the steps as the first of them says, else `own`. All ask together, before each
+    /// step and at the end.
+    fn agree(&mut self, own: Going) -> Going {
+        own
+    }
+    /// Where several processes take the steps, brings to the first of them what it has to have of the state after a step: the motion of the
+    /// watched nodes, and if it `looks` at more all of it. All ask together.
+    fn bring(&mut self, _looks: bool) {}
+}
+
+/// How a run on several ranks goes on, as the first one says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Going {
+    /// It takes another step, or is at its end.
+    On,
+    /// Somebody asked it to stop.
+    Stopped,
+    /// Its results could not be written.
+    Failed,
 }
 
 /// The contact problem of a step that failed.
@@ -66,6 +85,12 @@ pub trait Observer {
     /// # Errors
     /// Whatever keeps it from its work.
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), Error>;
+    /// Whether it is going to look at more of the state than watched nodes, those of contacts, and the report. Asked before
+    /// [`Observer::accepted`] where several processes take the steps; without it the state is known there alone
+    /// ([`StepReport::partial`]).
+    fn looks(&self, _run: &dyn Stepper) -> bool {
+        true
+    }
 }
 
 /// How a run ended.
@@ -112,10 +137,11 @@ pub fn go_on(
 
 /// Tells the observers of the end; the first error is returned.
 fn finish(
-    run: &dyn Stepper,
+    run: &mut dyn Stepper,
     observers: &mut [&mut dyn Observer],
     result: Result<Outcome, Error>,
 ) -> Result<Outcome, Error> {
+    run.bring(true);
     let mut finished = Ok(());
     for observer in observers {
         finished = finished.and(observer.finish(run));
@@ -131,14 +157,21 @@ fn steps(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    while !is_at_end(run, end) {
-        if stop() {
-            return Ok(Outcome::Interrupted);
+    loop {
+        let at_end = is_at_end(run, end);
+        let own = match !at_end && stop() {
+            true => Going::Stopped,
+            false => Going::On,
+        };
+        match run.agree(own) {
+            Going::Stopped => return Ok(Outcome::Interrupted),
+            Going::Failed => return Err(Error::FirstRank),
+            Going::On if at_end => return Ok(Outcome::Done),
+            Going::On => {}
         }
         run.step()?;
         tell(run, observers)?;
     }
-    Ok(Outcome::Done)
 }
 
 /// Whether a run has come to its end time (s), up to rounding of the sum of its steps.
@@ -151,8 +184,15 @@ pub fn step_count(end: f64, dt: f64) -> u64 {
     (end / dt - 1e-6).ceil().max(0.0) as u64
 }
 
-fn tell(run: &dyn Stepper, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    observers
+fn tell(run: &mut dyn Stepper, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
+    let looks = observers.iter().any(|observer| observer.looks(run));
+    run.bring(looks);
+    let told = observers
         .iter_mut()
-        .try_for_each(|observer| observer.accepted(run))
+        .try_for_each(|observer| observer.accepted(run));
+    if told.is_err() {
+        // other ranks, which have no observers, wait before their next step
+        run.agree(Going::Failed);
+    }
+    told
 }

@@ -90,6 +90,14 @@ const RESOLVED: f64 = 4.0;
 const TREMBLE: f64 = 0.01;
 
 impl ContactRecord {
+    /// Whether an impact begins or ends in a step after which the contact is `active` or not: the velocities of the bodies are asked for then.
+    pub(crate) fn changes(&self, active: bool) -> bool {
+        match &self.open {
+            None => active,
+            Some(open) => !active && open.released().is_none(),
+        }
+    }
+
     /// Impulse of the total normal force, N s: what the contact has given to the momentum of the bodies so far.
     pub fn impulse(&self) -> f64 {
         self.impulse.get()

@@ -77,6 +77,8 @@ pub struct StepReport {
     /// What the contacts did in the parts of the step, where it has some: the inner steps of zones, the halves of a nonlinear
     /// step that found no equilibrium. A contact of a zone without inner steps does in each part what it does in the step.
     pub samples: Vec<ContactSample>,
+    /// Whether the state is known at watched nodes and those of contacts alone, since other processes have the rest.
+    pub partial: bool,
 }
 
 impl StepReport {

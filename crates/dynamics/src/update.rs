@@ -62,6 +62,47 @@ impl Sums {
         self.fastest = self.fastest.max(other.fastest);
     }
 
+    /// All sums but the largest.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
+        let mut all = *self;
+        let mut numbers = [0.0; 50];
+        let mut out = numbers.iter_mut();
+        all.each(&mut |number| {
+            if let Some(out) = out.next() {
+                *out = *number;
+            }
+        });
+        numbers.into_iter()
+    }
+
+    /// Replaces all sums but the largest, in the order of [`Sums::numbers`].
+    pub(crate) fn take(&mut self, next: &mut impl FnMut() -> f64) {
+        self.each(&mut |number| *number = next());
+    }
+
+    fn each(&mut self, visit: &mut impl FnMut(&mut f64)) {
+        let Sums {
+            velocity,
+            acceleration,
+            works,
+            way,
+            squares,
+            momentum,
+            forces,
+            outside,
+            fastest: _,
+        } = self;
+        visit(velocity);
+        visit(way);
+        let lists = acceleration.iter_mut().chain(works).chain(squares);
+        lists.for_each(&mut *visit);
+        for resultant in forces.iter_mut().chain([momentum]) {
+            let entries = resultant.linear.iter_mut().chain(&mut resultant.angular);
+            entries.for_each(&mut *visit);
+        }
+        outside.iter_mut().flatten().for_each(visit);
+    }
+
     /// Leaves out what is no force in an axisymmetric system.
     pub(crate) fn of_axisymmetric(&mut self) {
         let resultants = self.forces.iter_mut().chain([&mut self.momentum]);

@@ -27,6 +27,10 @@ struct Watched {
     lengths: Vec<f64>,
 }
 
+/// Distortion of a body, by its number, at a displacement (m), by the number of the look; that found before where it is larger.
+pub(crate) type DistortionOf<'a> =
+    dyn Fn(usize, (&[f64], usize), &Distortion) -> Option<Distortion> + 'a;
+
 impl Watch {
     pub(crate) fn new(system: &System) -> Watch {
         let mut still = Vec::new();
@@ -40,21 +44,30 @@ impl Watch {
     }
 
     /// Looks at a state, the end of the given step, if it is time to.
-    pub(crate) fn look(&mut self, system: &System, step: u64, state: &mut State) {
+    pub(crate) fn look_alone(&mut self, system: &System, step: u64, state: &mut State) {
+        if state.records.small.is_due(step, &state.ledger) {
+            let of = |body: usize, (u, looks): (&[f64], usize), before: &Distortion| {
+                system.bodies[body].distortion(u, looks, before)
+            };
+            self.look(system, &of, state);
+        }
+    }
+
+    /// Looks at a state. `distortion`: of a body at a displacement, by the number of the look, or what was found before where that is
+    /// larger.
+    pub(crate) fn look(&mut self, system: &System, distortion: &DistortionOf, state: &mut State) {
         let energy = state.ledger.balance.strain;
         let found = &mut state.records.small;
-        if !found.is_due(step, &state.ledger) {
-            return;
-        }
         found.looks += 1;
         found.energy = found.energy.max(energy);
         let (u, time, looks) = (&state.motion.u[..], state.time, found.looks as usize);
-        for (body, found) in system.bodies.iter().zip(&mut found.bodies) {
+        for (body, found) in found.bodies.iter_mut().enumerate() {
             let before = Distortion {
                 rotation: found.rotation.extreme(),
                 strain: found.strain.extreme(),
             };
-            if let Some(Distortion { rotation, strain }) = body.distortion(u, looks, &before) {
+            let found_now = distortion(body, (u, looks), &before);
+            if let Some(Distortion { rotation, strain }) = found_now {
                 found.rotation.take(rotation.value, rotation.cell, time);
                 found.strain.take(strain.value, strain.cell, time);
             }

@@ -44,7 +44,7 @@ pub use pvd::Collection;
 pub use report::Report;
 pub use results::{
     BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Results, Settings,
-    Spectrum, Zoning, model_picture, qualities,
+    Spectrum, Zoning, model_picture, qualities, watched,
 };
 pub use statistics::{Allowable, Level, Statistics};
 pub use summary::Summary;

@@ -7,7 +7,7 @@ use super::element::Fault;
 use super::placement::Stored;
 
 /// What the elements of a body at finite strain are, beside their geometry.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Finite {
     pub(super) law: Law,
     /// Numbers that are kept of a point: those of the law, with bulk viscosity ln J, with deletion whether the element is deleted.

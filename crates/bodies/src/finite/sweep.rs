@@ -28,7 +28,7 @@ pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
 
 impl Finite {
     /// Numbers that the points of an element keep.
-    pub(super) fn kept_of_element(&self, block: &Block) -> usize {
+    pub(crate) fn kept_of_element(&self, block: &Block) -> usize {
         self.kept * self.shape.points(block)
     }
 

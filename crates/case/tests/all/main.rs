@@ -16,6 +16,7 @@ mod losses;
 mod means;
 mod offset;
 mod quadrature;
+mod ranks;
 mod reactions;
 mod reductions;
 mod reference;

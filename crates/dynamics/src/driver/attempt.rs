@@ -22,7 +22,7 @@ impl Driver {
         if self.is_known_finite() {
             return Ok(());
         }
-        self.check_finite()
+        self.check_finite_on_ranks()
     }
 
     pub(super) fn take_stages(&mut self) -> Result<(), Error> {

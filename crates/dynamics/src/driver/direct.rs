@@ -59,7 +59,14 @@ impl Driver {
         };
         let clean = std::mem::take(&mut direct.clean);
         direct.finite = false;
-        let taken = self.leap(&mut direct, clean);
+        let taken = match self.shared.take() {
+            None => self.leap(&mut direct, clean),
+            Some(mut shared) => {
+                let taken = self.step_on_ranks(&mut shared, &mut direct, clean);
+                self.shared = Some(shared);
+                taken
+            }
+        };
         self.direct = Some(direct);
         taken
     }
@@ -69,13 +76,7 @@ impl Driver {
         if !self.weak.none() {
             self.take_matrices()?;
         }
-        self.residuals.clear();
-        self.residuals.push(0.0);
-        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
-        direct.clear(clean, self.system.dim, &mut self.next.motion.contact_force);
-        if !clean {
-            self.vectors.x.fill(0.0);
-        }
+        self.begin_leap(direct, clean);
         self.place_end(direct);
         self.forces_of_end()?;
         let loads = self.loads_of_end(direct.loaded);
@@ -85,23 +86,46 @@ impl Driver {
         self.touch(direct, loads)?;
         self.count_contact(begin, before);
         let begin = Instant::now();
-        let sums = self.end_motion(direct, loads);
-        self.report_supports(loads);
+        self.end_motion(direct, loads);
+        direct.sum_parts();
+        let sums = direct.total(self.system.axisymmetric);
+        self.report_supports(loads, &|_| true);
+        self.know_end(&sums, direct);
+        self.end_directly(&sums, direct);
+        self.phases.balance += begin.elapsed();
+        Ok(())
+    }
+
+    /// Begins the step; `clean`: whether it is known which blocks have contact forces.
+    pub(super) fn begin_leap(&mut self, direct: &mut Direct, clean: bool) {
+        self.residuals.clear();
+        self.residuals.push(0.0);
+        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
+        direct.clear(clean, self.system.dim, &mut self.next.motion.contact_force);
+        if !clean {
+            self.vectors.x.fill(0.0);
+        }
+    }
+
+    /// What the next steps know of the end.
+    pub(super) fn know_end(&self, sums: &Sums, direct: &mut Direct) {
         direct.finite = (sums.velocity + sums.acceleration[1] + sums.way).is_finite();
         direct.clean = true;
+    }
+
+    /// Points, balance and records of the end.
+    pub(super) fn end_directly(&mut self, sums: &Sums, direct: &Direct) {
         self.end_points();
-        self.balance_directly(&sums, direct);
+        self.balance_directly(sums, direct);
         self.record_links();
         self.record_contacts();
         let records = &self.next.records.contacts;
         let momenta = |part: usize| direct.parts[part].momentum.linear;
         self.next.exchange.close(&self.system, momenta, records);
-        self.phases.balance += begin.elapsed();
-        Ok(())
     }
 
     /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.
-    fn place_end(&mut self, direct: &mut Direct) {
+    pub(super) fn place_end(&mut self, direct: &mut Direct) {
         let (row, motion) = (self.maps.first().displacement, &self.state.motion);
         direct.pending = None;
         if direct.ready.take() == Some(row) {
@@ -139,7 +163,7 @@ impl Driver {
     }
 
     /// Loads at the end: those of `load` where they vary, otherwise what the dead loads are multiplied with.
-    fn loads_of_end(&mut self, loaded: bool) -> Loads {
+    pub(super) fn loads_of_end(&mut self, loaded: bool) -> Loads {
         if !self.system.nonlinear.loads.is_empty() {
             self.vectors.place.clone_from(&self.next.motion.u);
             self.vectors.load.resize(self.system.unknowns(), 0.0);
@@ -177,7 +201,7 @@ impl Driver {
     }
 
     /// Forces of the contacts.
-    fn touch(&mut self, direct: &mut Direct, loads: Loads) -> Result<(), Error> {
+    pub(super) fn touch(&mut self, direct: &mut Direct, loads: Loads) -> Result<(), Error> {
         self.vectors.jumps = false;
         if self.system.contacts.is_empty() {
             self.candidates.clear();
@@ -254,8 +278,8 @@ impl Driver {
         }
     }
 
-    /// Accelerations and velocities of the end, and the sums of the step.
-    fn end_motion(&mut self, direct: &mut Direct, loads: Loads) -> Sums {
+    /// Accelerations and velocities of the end, and the sums of the blocks.
+    pub(super) fn end_motion(&mut self, direct: &mut Direct, loads: Loads) {
         let system = Arc::clone(&self.system);
         let map = self.maps.first();
         let means = [map.impulse.old, map.impulse.new];
@@ -307,11 +331,10 @@ impl Driver {
         if let Some(kept) = forces.get_mut(DAMPING) {
             kept.clone_from(&self.vectors.damping);
         }
-        direct.gather(system.axisymmetric)
     }
 
-    /// Forces of the named supports at the end: what is held has no acceleration.
-    fn report_supports(&mut self, loads: Loads) {
+    /// Forces of the named supports at the end: what is held has no acceleration. Those on nodes that do not `count` are left out.
+    pub(super) fn report_supports(&mut self, loads: Loads, count: &dyn Fn(usize) -> bool) {
         let motion = &self.next.motion;
         let load = |i: usize| match loads {
             Loads::None => 0.0,
@@ -320,7 +343,11 @@ impl Driver {
         };
         let displacement = self.system.is_nonlinear().then_some(&motion.u[..]);
         let at = (&self.state.motion.frames[..], displacement);
+        let unknowns = &self.system.unknowns;
         reported::write(&mut self.reactions, &self.system, at, |i| {
+            if !count(unknowns.node(i) as usize) {
+                return 0.0;
+            }
             let damping = self.vectors.damping.get(i).unwrap_or(&0.0);
             motion.internal_force[i] + damping - load(i) - motion.contact_force[i]
         });
@@ -417,7 +444,7 @@ impl Driver {
 
 /// Loads of such a step.
 #[derive(Clone, Copy)]
-enum Loads {
+pub(super) enum Loads {
     None,
     /// The dead loads, times these factors at start and end.
     Dead([f64; 2]),

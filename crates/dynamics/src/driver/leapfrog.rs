@@ -147,12 +147,17 @@ impl Direct {
         }
     }
 
-    /// The sums of the whole system; leaves those of the parts.
-    pub(super) fn gather(&mut self, axisymmetric: bool) -> Sums {
+    /// Sums of the parts from those of the blocks.
+    pub(super) fn sum_parts(&mut self) {
         self.parts.fill(Sums::default());
-        for (block, sums) in self.blocks.iter().zip(&self.sums) {
+        let blocks = self.blocks.iter().zip(&self.sums);
+        for (block, sums) in blocks.filter(|(block, _)| block.counts) {
             self.parts[block.part].add(sums);
         }
+    }
+
+    /// The sums of the whole system from those of the parts.
+    pub(super) fn total(&self, axisymmetric: bool) -> Sums {
         let mut all = Sums::default();
         for part in &self.parts {
             all.add(part);

@@ -52,6 +52,7 @@ pub mod paired;
 mod part_matrix;
 mod predictor;
 mod projection;
+mod ranked;
 pub(crate) mod record;
 mod refine;
 mod renewal;
@@ -69,6 +70,7 @@ mod step;
 mod supports;
 mod tangents;
 mod turned;
+mod unfit;
 mod weak;
 
 use std::cell::RefCell;
@@ -86,6 +88,7 @@ use crate::report::StepReport;
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::shapes::Rates;
+use crate::shared::Shared;
 use crate::state::State;
 use crate::step_map::StepMap;
 use crate::system::{LinkRow, Maps, System};
@@ -100,9 +103,11 @@ use leapfrog::Direct;
 use linking::Multipliers;
 use mixing::Mixing;
 use paired::Manner;
+pub use ranked::RankShare;
 use refine::Refined;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
+pub use unfit::why_not_on_ranks;
 use weak::{WeakForms, WithWeak};
 
 /// What a law in the rate is in a static stage.
@@ -127,6 +132,12 @@ pub struct Driver {
     /// For steps whose matrix is the lumped mass; none where there are no such steps.
     direct: Option<Direct>,
     rates: Rates,
+    /// What this process has of a run that several compute; none of one process.
+    shared: Option<Box<Shared>>,
+    /// Whether several compute it.
+    several: bool,
+    /// The last step at which it was asked whether to look at what is assumed small, of such a run.
+    looked: u64,
     floating: Floating,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,

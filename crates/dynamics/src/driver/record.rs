@@ -84,8 +84,12 @@ impl Driver {
             self.report.contacts[k] = report;
         }
         self.nodal = nodal;
-        self.watch
-            .look(&system, self.state.step + 1, &mut self.next);
+        if self.is_shared() {
+            // they look once the step is taken, together
+            return;
+        }
+        let state = &mut self.next;
+        self.watch.look_alone(&system, self.state.step + 1, state);
     }
 
     /// Moment of a contact in the step, about the point that it names, N m; zero where it names none.

@@ -35,7 +35,7 @@ impl Driver {
     /// # Errors
     /// An element without tangent.
     pub(super) fn renew_stable(&mut self, dt: f64) -> Result<(), Error> {
-        let system = &*self.system;
+        let system = std::sync::Arc::clone(&self.system);
         let explicit = system
             .schemes
             .iter()
@@ -43,13 +43,21 @@ impl Driver {
         if !explicit || self.is_static() || !system.bodies.iter().any(changes) {
             return Ok(());
         }
+        // nothing is known of the last pass: all nodes are asked
+        if self
+            .direct
+            .as_ref()
+            .is_some_and(|direct| direct.ready.is_none())
+        {
+            self.spread_on_ranks();
+        }
         let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
         let known = !shapes.looks.is_empty();
         if known {
             let fastest = |part: usize, w: &[f64; 3]| match &self.direct {
                 // the last pass has found them
                 Some(direct) if direct.ready.is_some() => direct.parts[part].fastest,
-                _ => fastest(system, part, (w, &motion.v)),
+                _ => fastest(&system, part, (w, &motion.v)),
             };
             let parts = &system.part_of_body;
             shapes.changed += dt * self.rates.largest(parts, &shapes.bodies, fastest);
@@ -57,6 +65,8 @@ impl Driver {
                 return Ok(());
             }
         }
+        self.spread_on_ranks();
+        let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
         shapes
             .looks
             .resize_with(system.bodies.len(), Looks::default);
@@ -125,8 +135,10 @@ impl Driver {
     /// That the smallest part of a step, `dt` (s), is beyond what an element has for critical step.
     fn shortened(&self, dt: f64) -> Error {
         let (system, state) = (&*self.system, &self.state);
-        let bound = system.critical_step_at(&state.motion);
-        let cell = bound.ok().and_then(|(_, bound)| bound.cell);
+        // of several ranks none has all elements as they are now
+        let whole = !self.is_shared();
+        let bound = whole.then(|| system.critical_step_at(&state.motion).ok());
+        let cell = bound.flatten().and_then(|(_, bound)| bound.cell);
         let owns = |body: &&Body| cell.is_some_and(|cell| body.cells().contains(&cell));
         let body = system.bodies.iter().find(owns);
         Error::Shortened {

@@ -7,7 +7,7 @@ use super::Driver;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
-use crate::march::{FailedProblem, Stepper};
+use crate::march::{FailedProblem, Going, Stepper};
 use crate::report::StepReport;
 use crate::state::State;
 use crate::system::{Adaptive, System};
@@ -231,5 +231,13 @@ impl Stepper for Driver {
         let friction = self.failed_friction.as_ref();
         let normal = self.failed.as_ref().map(FailedProblem::Normal);
         normal.or(friction.map(FailedProblem::Friction))
+    }
+
+    fn agree(&mut self, own: Going) -> Going {
+        self.agree_on_ranks(own)
+    }
+
+    fn bring(&mut self, looks: bool) {
+        self.bring_on_ranks(looks);
     }
 }

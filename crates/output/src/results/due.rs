@@ -30,15 +30,21 @@ impl Due {
         }
     }
 
-    /// Whether one is due at a simulated time (s) after a step; `dt`: the step of the model, s.
+    /// Whether one is due at a simulated time (s) after a step, and takes note of the time; `dt`: the step of the model, s.
     pub(super) fn take(&mut self, settings: &Checkpoints, time: f64, dt: f64) -> bool {
+        let due = self.is_due(settings, time, dt);
+        self.seen = time;
+        due
+    }
+
+    /// Whether one is due.
+    pub(super) fn is_due(&self, settings: &Checkpoints, time: f64, dt: f64) -> bool {
         // instants are sums of steps: a millionth of one is rounding
         let number = |time: f64, every: f64| ((time + 1e-6 * dt) / every).floor();
         let crossed = |every: f64| number(time, every) > number(self.seen, every);
         let by_time = settings.every.is_some_and(crossed);
         let over = |wall: Duration| self.last.elapsed() >= wall.max(self.pause);
         let by_wall = settings.wall.is_some_and(over);
-        self.seen = time;
         by_time || by_wall
     }
 

@@ -76,15 +76,7 @@ impl FieldOutput {
         system: &System,
         state: &State,
     ) -> Result<(), Error> {
-        let due = match self.sent.times.last() {
-            None => true,
-            Some(_) => {
-                // instants are sums of steps: a millionth of one is rounding
-                let rounding = 1e-6 * system.dt;
-                let number = |time: f64| ((time + rounding) / self.fields.every).floor();
-                number(state.time) > number(self.sent.seen)
-            }
-        };
+        let due = self.is_due(system, state.time);
         self.sent.seen = state.time;
         let outcome = match due {
             true => self.send(folder, system, state),
@@ -92,6 +84,14 @@ impl FieldOutput {
         };
         self.failed |= outcome.is_err();
         outcome
+    }
+
+    /// Whether a state of this time (s) is due.
+    pub(crate) fn is_due(&self, system: &System, time: f64) -> bool {
+        // instants are sums of steps: a millionth of one is rounding
+        let rounding = 1e-6 * system.dt;
+        let number = |time: f64| ((time + rounding) / self.fields.every).floor();
+        self.sent.times.is_empty() || number(time) > number(self.sent.seen)
     }
 
     /// Hands over the last state, unless it is there already, waits for the thread, and writes the files of all instants.

@@ -9,6 +9,7 @@ use crate::Error;
 use crate::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
 use crate::results::outlines::{Outlines, gap, size};
 use crate::results::settings::LevelSettings;
+use crate::results::stills::GROWTH;
 
 /// Most instants that are drawn.
 const DRAWN: usize = 3;
@@ -118,6 +119,14 @@ impl Instants {
     /// Goes on from what was kept.
     pub(crate) fn go_on(&mut self, kept: Vec<Instant>) {
         self.instants = kept;
+    }
+
+    /// Whether the largest force has grown so far that a state is asked for where other processes have it: by 2 %, as that of the stills.
+    pub(crate) fn wants(&self, report: &StepReport) -> bool {
+        self.instants.iter().any(|instant| {
+            let forces = instant.contacts.iter().map(|&k| report.contacts[k].force);
+            forces.fold(0.0, f64::max) > instant.force * GROWTH
+        })
     }
 
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {

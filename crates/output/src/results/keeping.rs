@@ -172,7 +172,8 @@ impl Results {
         let is_due = self
             .due
             .take(&self.settings.checkpoints, state.time, self.system.dt);
-        match is_due {
+        // what is due by the wall since it was asked for the state is due after the next step too
+        match is_due && !run.report().partial {
             true => self.keep(run),
             false => Ok(()),
         }

@@ -232,7 +232,9 @@ impl Results {
             .push(&self.system, (state, report), &self.impacts.told.contacts);
         self.series.push_loads(report.time, &self.loads.now);
         self.raster.push(&self.system, state, report);
-        self.instants.push(&self.system, state, report);
+        if !report.partial {
+            self.instants.push(&self.system, state, report);
+        }
         self.discrete.push(&self.system, state);
         self.spectra.push(&self.system, state, report);
         self.filtered.push(&self.system, state, report);
@@ -298,6 +300,27 @@ impl Results {
     }
 }
 
+/// Nodes (system numbers) whose motion the results follow from step to step: those of probes and of the contact point that is drawn.
+///
+/// # Errors
+/// A probe without a node of a body.
+pub fn watched(settings: &Settings, system: &System) -> Result<Vec<u32>, Error> {
+    let point = sensor::contact_point(system, settings.reference.as_ref(), None);
+    let sides = point.iter().flat_map(|point| &point.sides);
+    let mut nodes: Vec<u32> = sides.flat_map(|(_, sensor)| sensor.nodes()).collect();
+    for probe in &settings.probes {
+        let sensors = sensor::of_probe(system, probe)?;
+        nodes.extend(sensors.iter().flat_map(sensor::Sensor::nodes));
+        let cells = probe.cell.iter();
+        let of_cells = cells.flat_map(|&cell| system.mesh.element_nodes(cell));
+        nodes.extend(of_cells.map(|&node| system.number[node as usize]));
+    }
+    nodes.retain(|node| *node != u32::MAX);
+    nodes.sort_unstable();
+    nodes.dedup();
+    Ok(nodes)
+}
+
 impl Observer for Results {
     fn accepted(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         let begin = Instant::now();
@@ -306,6 +329,24 @@ impl Observer for Results {
         let outcome = taken.and_then(|()| self.keep_if_due(run));
         self.totals.spent += begin.elapsed();
         outcome.map_err(observer)
+    }
+
+    fn looks(&self, run: &dyn Stepper) -> bool {
+        let (time, report) = (run.state().time, run.report());
+        let fields = self.fields.as_ref();
+        // the stress of a cell is a function of its history
+        let cells = self
+            .settings
+            .probes
+            .iter()
+            .any(|probe| probe.cell.is_some());
+        fields.is_some_and(|fields| fields.is_due(&self.system, time))
+            || self.stills.wants(time, report).contains(&true)
+            || self.instants.wants(report)
+            || self
+                .due
+                .is_due(&self.settings.checkpoints, time, self.system.dt)
+            || cells && !run.state().motion.history.is_empty()
     }
 
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {

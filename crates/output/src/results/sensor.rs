@@ -23,6 +23,11 @@ impl Sensor {
         }
     }
 
+    /// Its nodes.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.terms.iter().map(|(node, _)| *node)
+    }
+
     /// The value in a motion.
     pub(crate) fn of(&self, system: &System, motion: &Motion, order: Order) -> f64 {
         let products = self.terms.iter().map(|(node, c)| {

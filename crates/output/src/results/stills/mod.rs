@@ -27,7 +27,7 @@ const BYTES: usize = 64 << 20;
 const STEPS: f64 = 250.0;
 
 /// Growth of the force from one copy to the next: the state of the largest force is that of one 2 % below it at the least.
-const GROWTH: f64 = 1.02;
+pub(crate) const GROWTH: f64 = 1.02;
 
 /// Releases that follow each other faster than this part of the run are one: the first.
 const RELEASES: f64 = 1.0 / 400.0;
@@ -123,29 +123,41 @@ impl Stills {
 
     /// Keeps the state if it is one of those to be kept.
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
+        let [equal, closing, largest, release] = self.wants(state.time, report);
+        if equal {
+            self.keep(system, state);
+        }
+        let (force, kept) = (largest_force(report), &mut self.kept);
+        if closing {
+            kept.closing = Some(of(system, &self.seen, state));
+        }
+        if largest {
+            kept.largest.take(force, state);
+        }
+        if release {
+            kept.release.take(state.time, state);
+        }
+        kept.closed = force > 0.0;
+    }
+
+    /// Whether the state of this time (s) is one of those to be kept: at equal times, as the first with a contact force, that of the largest,
+    /// that of the last release.
+    pub(crate) fn wants(&self, time: f64, report: &StepReport) -> [bool; 4] {
         // a step that ends there to within rounding is there
         // the time of a static stage before the dynamics is none: its start and its end are kept
         let since = |time: f64| (time - self.begin) / self.every;
         let number = |time: f64| (since(time) + 1e-6).floor().max(-1.0);
-        let last = self.kept.equal.last();
-        if last.is_none_or(|still| number(state.time) > number(still.time)) {
-            self.keep(system, state);
-        }
-        let force = report.contacts.iter().map(|contact| contact.force);
-        let force = force.fold(0.0, f64::max);
-        let (closed, kept) = (force > 0.0, &mut self.kept);
-        if closed && kept.closing.is_none() {
-            kept.closing = Some(of(system, &self.seen, state));
-        }
-        if closed && force > kept.largest.measure * GROWTH {
-            kept.largest.take(force, state);
-        }
+        let (force, kept) = (largest_force(report), &self.kept);
+        let closed = force > 0.0;
         let pause = RELEASES * (self.end - self.begin);
-        let again = kept.release.is_none() || state.time > kept.release.measure + pause;
-        if kept.closed && !closed && again {
-            kept.release.take(state.time, state);
-        }
-        kept.closed = closed;
+        let again = kept.release.is_none() || time > kept.release.measure + pause;
+        let last = kept.equal.last();
+        [
+            last.is_none_or(|still| number(time) > number(still.time)),
+            closed && kept.closing.is_none(),
+            closed && force > kept.largest.measure * GROWTH,
+            kept.closed && !closed && again,
+        ]
     }
 
     /// Keeps the last state, whatever its turn, and turns what was copied into pictures.
@@ -169,6 +181,12 @@ impl Stills {
         let still = of(system, &self.seen, state);
         self.kept.equal.push(still);
     }
+}
+
+/// The largest force of a contact, N.
+fn largest_force(report: &StepReport) -> f64 {
+    let forces = report.contacts.iter().map(|contact| contact.force);
+    forces.fold(0.0, f64::max)
 }
 
 impl Kept {

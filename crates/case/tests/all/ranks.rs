@@ -1,0 +1,418 @@
+//! Runs on several ranks, here threads that send each other messages as processes do: the results of one process, and its folder.
+
+use std::cell::Cell;
+use std::path::Path;
+use std::sync::Arc;
+
+use carom_case::{
+    Built, Failed, Finished, Input, Resume, build, parse, refused_on_ranks, run, run_on_ranks,
+};
+use carom_dynamics::{Driver, State};
+use carom_output::checkpoint;
+use carom_ranks::{Ranks, threads};
+
+use crate::compare::Nobody;
+
+/// Two bars, one faster than the other.
+const BARS: &str = r#"
+carom = 1
+[mesh]
+generate.striker.line = { from = [-0.2], to = [0.0], elements = 40 }
+generate.target.line = { from = [0.0], to = [0.2], elements = 40 }
+[material.steel]
+density = 7800.0
+elastic = { young = "210 GPa", poisson = 0.0 }
+[body.striker]
+region = "striker"
+material = "steel"
+section.bar = { area = "100 mm^2" }
+initial = { velocity = [5.0] }
+[body.target]
+region = "target"
+material = "steel"
+section.bar = { area = "100 mm^2" }
+[contact.shock]
+secondary = "striker.right"
+primary = "target.left"
+law.velocity = {}
+[time]
+end = "100 us"
+step = { courant = 0.5 }
+scheme.central-difference = {}
+[probe.tip]
+on = "target.right"
+record = ["displacement", "velocity"]
+"#;
+
+/// A block that falls on a plane and tilts. The law of the material is added.
+const BLOCK: &str = r#"
+carom = 1
+[mesh]
+generate.block.box = { origin = [0.0, 0.0, 0.002], size = [0.1, 0.08, 0.12], elements = [5, 4, 6] }
+[material.soft]
+density = 1000.0
+MATERIAL
+[body.block]
+region = "block"
+material = "soft"
+initial = { velocity = [0.3, 0.0, -5.0] }
+[contact.ground]
+secondary = "block.bottom"
+obstacle.plane = { point = [0.0, 0.0, 0.0], normal = [0.1, 0.0, 1.0] }
+law.velocity = {}
+[time]
+end = "1.5 ms"
+step = { critical = 0.2 }
+scheme.central-difference = {}
+[load.weight]
+acceleration = [0.0, 0.0, -9.81]
+[probe.top]
+on = "block.top"
+record = ["displacement", "velocity"]
+[output]
+fields = { every = "0.3 ms", record = ["displacement", "stress"] }
+"#;
+
+/// Two rectangles of which one falls on the other, which a support holds.
+const PAIR: &str = r#"
+carom = 1
+[mesh]
+generate.lower.rectangle = { origin = [0.0, 0.0], size = [0.2, 0.1], elements = [10, 5] }
+generate.upper.rectangle = { origin = [0.03, 0.1005], size = [0.1, 0.08], elements = [7, 6] }
+[material.soft]
+density = 1000.0
+elastic = { young = "50 MPa", poisson = 0.3 }
+[body.lower]
+region = "lower"
+material = "soft"
+section.plane-strain = { thickness = 1.0 }
+[body.upper]
+region = "upper"
+material = "soft"
+section.plane-strain = { thickness = 1.0 }
+initial = { velocity = [0.0, -2.0] }
+[support.floor]
+on = "lower.bottom"
+fix = ["x", "y"]
+[contact.pair]
+secondary = "upper.bottom"
+primary = "lower.top"
+law.velocity = {}
+friction.coulomb = 0.2
+sliding = "finite"
+[time]
+end = "1.2 ms"
+step = { critical = 0.5 }
+scheme.central-difference = {}
+"#;
+
+const SMALL: &str = r#"elastic = { young = "5 MPa", poisson = 0.3 }"#;
+const FINITE: &str = r#"neo-hooke = { young = "5 MPa", poisson = 0.3 }"#;
+const METAL: &str =
+    r#"j2 = { young = "50 MPa", poisson = 0.3, yield-stress = "0.2 MPa", hardening = "1 MPa" }"#;
+
+fn block(material: &str) -> String {
+    BLOCK.replace("MATERIAL", material)
+}
+
+fn built(text: &str) -> (Input, carom_case::schema::Case, Built) {
+    let input = Input::from_text("case.toml", text, &[]);
+    let (case, locator) = parse(&input).unwrap_or_else(|problems| panic!("{problems:?}"));
+    let built = build(&case, &locator, &input).unwrap_or_else(|problems| panic!("{problems:?}"));
+    (input, case, built)
+}
+
+/// Stops a run after so many steps.
+fn after(steps: u64) -> impl Fn() -> bool {
+    let left = Cell::new(steps);
+    move || left.replace(left.get().saturating_sub(1)) == 0
+}
+
+fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
+    std::thread::scope(|scope| {
+        let ranks = threads(count).into_iter();
+        let work = &work;
+        let started: Vec<_> = ranks.map(|own| scope.spawn(move || work(&own))).collect();
+        started.into_iter().map(|one| one.join().unwrap()).collect()
+    })
+}
+
+/// Runs a case on so many ranks, with the end of each.
+fn run_on(
+    count: usize,
+    text: &str,
+    folder: &Path,
+    steps: u64,
+) -> Vec<Result<Option<Finished>, Failed>> {
+    on_all(count, |ranks| {
+        let (input, case, built) = built(text);
+        let parts = (&input, &case, &built);
+        run_on_ranks(ranks, parts, folder.to_owned(), &mut Nobody, &after(steps))
+    })
+}
+
+/// The state of the last checkpoint.
+fn last(text: &str, folder: &Path) -> State {
+    let (_, _, built) = built(text);
+    let (checkpoint, _) = checkpoint::latest(folder).unwrap();
+    State::from_bytes(&built.system, &checkpoint.state).unwrap()
+}
+
+/// The largest difference of two vectors, over the largest entry of the first.
+fn apart(one: &[f64], other: &[f64]) -> f64 {
+    assert_eq!(one.len(), other.len());
+    let most = one
+        .iter()
+        .fold(f64::MIN_POSITIVE, |most, x| most.max(x.abs()));
+    let differences = one.iter().zip(other).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max) / most
+}
+
+/// That two runs have the same motion, forces, histories and balances. Sums of forces are in another order, and rounding grows by some ten
+/// times in each impact of a point: 1e-9 is a million roundings.
+fn assert_same(name: &str, one: &State, other: &State) {
+    const TOLERANCE: f64 = 1e-9;
+    assert_eq!(one.step, other.step, "{name}");
+    let (a, b) = (&one.motion, &other.motion);
+    let vectors = [
+        ("displacement", &a.u, &b.u),
+        ("velocity", &a.v, &b.v),
+        ("acceleration", &a.a, &b.a),
+        ("internal force", &a.internal_force, &b.internal_force),
+        ("history", &a.history, &b.history),
+        (
+            "contact force",
+            &one.interface.force,
+            &other.interface.force,
+        ),
+    ];
+    for (of, a, b) in vectors {
+        let apart = apart(a, b);
+        assert!(apart < TOLERANCE, "{name}: {of} differs by {apart:e}");
+    }
+    let (a, b) = (&one.ledger.balance, &other.ledger.balance);
+    let most = one.ledger.largest_energy;
+    for (of, a, b) in [
+        ("kinetic energy", a.kinetic, b.kinetic),
+        ("strain energy", a.strain, b.strain),
+        ("work of contacts", a.work_contact, b.work_contact),
+        ("energy residual", a.energy_residual, b.energy_residual),
+    ] {
+        assert!((a - b).abs() < TOLERANCE * most, "{name}: {of} {a:e} {b:e}");
+    }
+    assert_eq!(one.impacts_count(), other.impacts_count(), "{name}");
+}
+
+trait Count {
+    fn impacts_count(&self) -> usize;
+}
+
+impl Count for State {
+    fn impacts_count(&self) -> usize {
+        self.records.ended().count()
+    }
+}
+
+/// Rows of `histories.csv`.
+fn rows(folder: &Path) -> Vec<Vec<f64>> {
+    let text = std::fs::read_to_string(folder.join("histories.csv")).unwrap();
+    let row = |line: &str| {
+        line.split(',')
+            .map(|cell| cell.parse().unwrap_or(0.0))
+            .collect()
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+fn compare_on_ranks(name: &str, text: &str, counts: &[usize]) {
+    let folder = tempfile::tempdir().unwrap();
+    let alone = folder.path().join("alone");
+    let (input, case, model) = built(text);
+    run((&input, &case, &model), alone.clone(), &mut Nobody, &|| {
+        false
+    })
+    .unwrap();
+    let state = last(text, &alone);
+    let histories = rows(&alone);
+    for &count in counts {
+        let name = format!("{name} on {count} ranks");
+        let several = folder.path().join(count.to_string());
+        let ended = run_on(count, text, &several, u64::MAX);
+        let mut ended = ended.into_iter().map(|end| end.unwrap());
+        let finished = ended.next().unwrap().unwrap();
+        assert!(ended.all(|end| end.is_none()), "{name}: one tells the end");
+        assert_same(&name, &state, &last(text, &several));
+        // the balances are as good as those of one process: rounding of the energies
+        assert!(finished.summary.energy.relative_residual < 1e-9, "{name}");
+        assert!(finished.summary.momentum.relative_residual < 1e-9, "{name}");
+        let others = rows(&several);
+        assert_eq!(histories.len(), others.len(), "{name}");
+        for column in 0..histories[0].len() {
+            let of =
+                |rows: &[Vec<f64>]| -> Vec<f64> { rows.iter().map(|row| row[column]).collect() };
+            let (one, other) = (of(&histories), of(&others));
+            let most = one.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            let residual = most < 1e-9;
+            assert!(
+                residual || apart(&one, &other) < 1e-8,
+                "{name}: column {column}"
+            );
+        }
+        for file in ["summary.json", "report.html", "impacts.csv"] {
+            assert!(several.join(file).is_file(), "{name}: {file}");
+        }
+    }
+}
+
+#[test]
+fn bars_are_those_of_one_process_on_several_ranks() {
+    compare_on_ranks("bars", BARS, &[2, 4]);
+}
+
+#[test]
+fn a_block_is_that_of_one_process_on_several_ranks() {
+    compare_on_ranks("block", &block(SMALL), &[2, 4]);
+}
+
+#[test]
+fn a_block_at_finite_strain_is_that_of_one_process_on_several_ranks() {
+    compare_on_ranks("finite block", &block(FINITE), &[3]);
+}
+
+#[test]
+fn a_block_of_metal_keeps_its_histories_on_several_ranks() {
+    compare_on_ranks("metal block", &block(METAL), &[2]);
+}
+
+#[test]
+fn two_bodies_with_friction_and_a_support_are_those_of_one_process_on_several_ranks() {
+    compare_on_ranks("pair", PAIR, &[2, 4]);
+}
+
+#[test]
+fn three_ranks_and_one_go_on_from_the_checkpoint_of_four() {
+    let text = block(METAL);
+    let folder = tempfile::tempdir().unwrap();
+    let alone = folder.path().join("alone");
+    let (input, case, model) = built(&text);
+    run((&input, &case, &model), alone.clone(), &mut Nobody, &|| {
+        false
+    })
+    .unwrap();
+    for count in [3, 1] {
+        let cut = folder.path().join(format!("cut-{count}"));
+        let ended = run_on(4, &text, &cut, 25);
+        let finished = ended.into_iter().next().unwrap().unwrap().unwrap();
+        assert!(finished.interrupted);
+        let first = last(&text, &cut).step;
+        assert_eq!(first, 25);
+        if count == 1 {
+            let Ok(resume) = Resume::open(&cut, &[]) else {
+                panic!("the folder is refused")
+            };
+            resume.run(&mut Nobody, &|| false).unwrap();
+        } else {
+            on_all(count, |ranks| {
+                let opened = match ranks.is_first() {
+                    true => Resume::open(&cut, &[]),
+                    false => Resume::open_beside(&cut, &[]),
+                };
+                let Ok(resume) = opened else {
+                    panic!("the folder is refused")
+                };
+                resume.run_on_ranks(ranks, &mut Nobody, &|| false).unwrap();
+            });
+        }
+        assert_same("resumed", &last(&text, &alone), &last(&text, &cut));
+    }
+}
+
+#[test]
+fn a_step_that_fails_on_one_rank_fails_on_all_with_one_message_and_a_checkpoint() {
+    // nodes that the plane has stopped are overtaken in one step, by five elements: these turn inside out, and steps are not halved
+    let text = block(FINITE).replace("-5.0]", "-5000.0]").replace(
+        "step = { critical = 0.2 }",
+        "step = \"20 us\"\nnewton = { halvings = 0 }",
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("failed");
+    let ended = run_on(4, &text, &path, u64::MAX);
+    let messages = ended
+        .iter()
+        .map(|end| end.as_ref().unwrap_err().to_string());
+    let messages: Vec<String> = messages.collect();
+    assert!(messages[0].starts_with("rank "), "{messages:?}");
+    assert!(
+        messages.iter().all(|message| *message == messages[0]),
+        "{messages:?}"
+    );
+    let state = last(&text, &path);
+    assert!(state.step > 0 && state.motion.u.iter().all(|u| u.is_finite()));
+}
+
+#[test]
+fn results_that_cannot_be_written_end_all_ranks() {
+    let folder = tempfile::tempdir().unwrap();
+    // a folder with files of somebody else
+    std::fs::write(folder.path().join("letter.txt"), "dear").unwrap();
+    let ended = run_on(2, BARS, folder.path(), u64::MAX);
+    assert!(ended.iter().all(Result::is_err));
+    assert!(
+        ended[1]
+            .as_ref()
+            .unwrap_err()
+            .to_string()
+            .starts_with("rank 0: ")
+    );
+}
+
+/// What ranks count and send a step over some steps of a block, which begins so high above the plane (m).
+fn sent(height: &str, steps: u64) -> Vec<[f64; 2]> {
+    let text = block(SMALL).replace("0.002]", height);
+    on_all(4, |ranks| {
+        let (_, _, built) = built(&text);
+        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
+        driver.share(ranks, &[]).unwrap();
+        let before = driver.rank_share().unwrap();
+        (0..steps).for_each(|_| driver.step().unwrap());
+        let sent = driver.rank_share().unwrap().sent_bytes - before.sent_bytes;
+        [before.halo_bytes as f64, sent as f64 / steps as f64]
+    })
+}
+
+#[test]
+fn ranks_send_what_is_counted() {
+    let flying = sent("0.2]", 20);
+    for (rank, [counted, sent]) in flying.iter().enumerate() {
+        assert!(
+            *counted > 0.0 && counted == sent,
+            "rank {rank}: {counted} {sent}"
+        );
+    }
+    // velocities go to the first rank besides, where impacts begin or end
+    for (rank, [counted, sent]) in sent("0.002]", 100).iter().enumerate() {
+        assert!(
+            (1.0..1.1).contains(&(sent / counted)),
+            "rank {rank}: {counted} {sent}"
+        );
+    }
+    // four parts of 5 x 4 x 6 elements: the first cut is a plane of 6 x 5 nodes across the longest side, each half is cut across 5 elements, in
+    // the plane of 5 x 4 nodes; all these nodes are sent both ways, those on both planes to three ranks, and contact forces of the bottom of
+    // 6 x 5 nodes at most
+    let nodes = flying.iter().map(|[counted, _]| counted).sum::<f64>() / 24.0;
+    let cuts = 2.0 * (30.0 + 2.0 * 20.0);
+    assert!((cuts..=1.5 * cuts + 60.0).contains(&nodes), "{nodes} nodes");
+}
+
+#[test]
+fn what_several_ranks_do_not_take_is_refused_at_its_key() {
+    let newmark = BARS.replace("scheme.central-difference", "scheme.newmark");
+    let damped = PAIR.replace("[body.lower]", "[body.lower]\ndamping = { mass = 1.0 }");
+    for (text, path) in [(newmark, "time.scheme"), (damped, "body.lower.damping")] {
+        let (_, case, built) = built(&text);
+        let problem = refused_on_ranks(&case, &built).unwrap();
+        assert_eq!(problem.path, path);
+    }
+    let (_, case, model) = built(BARS);
+    assert_eq!(refused_on_ranks(&case, &model), None);
+}

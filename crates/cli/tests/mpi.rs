@@ -1,0 +1,243 @@
+//! `mpirun carom run`: the results of one process. Built with the feature `mpi` alone; needs `mpirun` of Open MPI.
+
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+const BLOCK: &str = r#"
+carom = 1
+[mesh]
+generate.block.box = { origin = [0.0, 0.0, 0.002], size = [0.1, 0.08, 0.12], elements = [6, 5, 7] }
+[material.soft]
+density = 1000.0
+neo-hooke = { young = "5 MPa", poisson = 0.3 }
+[body.block]
+region = "block"
+material = "soft"
+initial = { velocity = [0.3, 0.0, SPEED] }
+[contact.ground]
+secondary = "block.bottom"
+obstacle.plane = { point = [0.0, 0.0, 0.0], normal = [0.1, 0.0, 1.0] }
+law.velocity = {}
+[time]
+end = "2 ms"
+step = { critical = 0.2 }
+scheme.central-difference = {}
+[probe.top]
+on = "block.top"
+record = ["displacement", "velocity"]
+"#;
+
+fn write(folder: &Path, speed: &str) {
+    fs::write(folder.join("case.toml"), BLOCK.replace("SPEED", speed)).unwrap();
+}
+
+/// The program on so many ranks, more than the machine has processors perhaps.
+fn mpirun(folder: &Path, ranks: usize, arguments: &[&str]) -> Command {
+    let mut command = Command::new("mpirun");
+    command
+        .args([
+            "--oversubscribe",
+            "-n",
+            &ranks.to_string(),
+            env!("CARGO_BIN_EXE_carom"),
+        ])
+        .args(arguments)
+        .current_dir(folder)
+        // Open MPI refuses root, which containers have, unless it is told twice
+        .env("OMPI_ALLOW_RUN_AS_ROOT", "1")
+        .env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// Rows of the histories.
+fn rows(folder: &Path) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(folder.join("histories.csv")).unwrap();
+    let row = |line: &str| {
+        line.split(',')
+            .map(|cell| cell.parse().unwrap_or(0.0))
+            .collect()
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// Names of the columns, and by how much each differs, over the largest entry of all components of its quantity.
+fn differences(one: &Path, other: &Path) -> Vec<(String, f64)> {
+    let text = fs::read_to_string(one.join("histories.csv")).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let (one, other) = (rows(one), rows(other));
+    assert_eq!(one.len(), other.len());
+    let quantity = |name: &str| {
+        let axes = ["_x_", "_y_", "_z_", ".x_", ".y_", ".z_"].iter();
+        axes.fold(name.to_owned(), |name, axis| name.replace(axis, "_"))
+    };
+    let largest = |column: usize| {
+        one.iter()
+            .fold(1e-30f64, |most, row| most.max(row[column].abs()))
+    };
+    let of = |(column, name): (usize, &&str)| {
+        let alike = (0..names.len()).filter(|&k| quantity(names[k]) == quantity(name));
+        let most = alike.map(largest).fold(0.0, f64::max);
+        let pairs = one.iter().zip(&other);
+        let apart = pairs.fold(0.0f64, |most, (a, b)| {
+            most.max((a[column] - b[column]).abs())
+        });
+        ((*name).to_owned(), apart / most)
+    };
+    names.iter().enumerate().map(of).collect()
+}
+
+/// That motion, forces and energies of a run are those of one process: 1e-9 is a million roundings, in a run with some tens of closings.
+fn assert_same(alone: &Path, several: &Path) {
+    for (name, apart) in differences(alone, several) {
+        // residuals are rounding in both
+        if !name.contains("residual") && !name.contains("dissipation") {
+            assert!(apart < 1e-9, "{name}: {apart:e}");
+        }
+    }
+}
+
+fn run_alone(folder: &Path, set: &[&str]) {
+    let output = Command::new(env!("CARGO_BIN_EXE_carom"))
+        .args(["run", "case.toml", "--results", "alone"])
+        .args(set)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+#[test]
+fn several_processes_give_the_results_of_one() {
+    let work = tempfile::tempdir().unwrap();
+    write(work.path(), "-5.0");
+    run_alone(work.path(), &[]);
+    for ranks in [1, 2, 4] {
+        let name = ranks.to_string();
+        let output = mpirun(
+            work.path(),
+            ranks,
+            &["run", "case.toml", "--results", &name],
+        );
+        let output = { output }.output().unwrap();
+        assert!(output.status.success(), "{}", said(&output));
+        assert_same(&work.path().join("alone"), &work.path().join(&name));
+        // one tells the end
+        assert_eq!(
+            said(&output).matches("verdict:").count(),
+            1,
+            "{}",
+            said(&output)
+        );
+    }
+}
+
+#[test]
+fn a_rank_that_fails_ends_all_with_one_message() {
+    let work = tempfile::tempdir().unwrap();
+    // nodes that the plane has stopped are overtaken in one step, by five elements: these turn inside out, and steps are not halved
+    let text = BLOCK.replace("SPEED", "-5000.0");
+    let text = text.replace(
+        "step = { critical = 0.2 }",
+        "step = \"20 us\"\nnewton = { halvings = 0 }",
+    );
+    fs::write(work.path().join("case.toml"), text).unwrap();
+    let output = mpirun(work.path(), 3, &["run", "case.toml"])
+        .output()
+        .unwrap();
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert_eq!(said.matches("error: rank ").count(), 1, "{said}");
+    assert!(
+        work.path().join("case.carom/checkpoints").is_dir(),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_ranks_do_not_take_is_refused_at_its_key() {
+    let work = tempfile::tempdir().unwrap();
+    let text = BLOCK
+        .replace("SPEED", "-5.0")
+        .replace("critical = 0.2", "courant = 0.5")
+        .replace("central-difference", "newmark");
+    fs::write(work.path().join("case.toml"), text).unwrap();
+    let output = mpirun(work.path(), 2, &["run", "case.toml"])
+        .output()
+        .unwrap();
+    let said = said(&output);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(
+        said.contains("time.scheme") || said.contains("scheme.newmark"),
+        "{said}"
+    );
+    assert_eq!(said.matches("several ranks take no").count(), 1, "{said}");
+}
+
+/// Waits until a file is there.
+fn wait_for(path: &Path, child: &mut Child) {
+    let begin = Instant::now();
+    while !path.exists() && begin.elapsed() < Duration::from_secs(60) {
+        assert!(child.try_wait().unwrap().is_none(), "the run has ended");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The number of a process below another one that runs this program.
+fn rank_of(mpirun: u32) -> Option<u32> {
+    let children = format!("/proc/{mpirun}/task/{mpirun}/children");
+    let children = fs::read_to_string(children).ok()?;
+    let mut numbers = children
+        .split_whitespace()
+        .filter_map(|number| number.parse().ok());
+    numbers.next_back()
+}
+
+#[test]
+fn three_processes_go_on_after_one_of_four_was_killed() {
+    let work = tempfile::tempdir().unwrap();
+    write(work.path(), "-5.0");
+    let long = [
+        "--set",
+        "time.end=40 ms",
+        "--set",
+        "output.checkpoint.every=0.5 ms",
+    ];
+    run_alone(work.path(), &long);
+    let arguments = [&["run", "case.toml"], &long[..]].concat();
+    let mut child = mpirun(work.path(), 4, &arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for(
+        &work.path().join("case.carom/checkpoints/last.state"),
+        &mut child,
+    );
+    let killed = rank_of(child.id()).expect("a rank");
+    Command::new("kill")
+        .args(["-9", &killed.to_string()])
+        .status()
+        .unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(!output.status.success());
+    // that of mpirun names the rank and the signal
+    let killed = said(&output);
+    assert!(
+        killed.contains("signal 9") && killed.contains("rank"),
+        "{killed}"
+    );
+    let output = mpirun(work.path(), 3, &["resume", "case.carom"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    assert_same(&work.path().join("alone"), &work.path().join("case.carom"));
+}

@@ -1,0 +1,281 @@
+//! Explicit steps that several processes take together.
+//!
+//! Each rank computes the forces of its own elements and the motion of their nodes. The first one has the contacts: it knows the motion
+//! of their nodes and the sums of the forces there, and gives the contact forces to the ranks whose elements have these nodes. Sums
+//! over all ranks end the step, with what went wrong on any of them: all take the step, or none.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use carom_bodies::{Distortion, Extreme};
+use carom_ranks::Ranks;
+
+use super::Driver;
+use super::leapfrog::Direct;
+use crate::error::Error;
+use crate::march::Going;
+use crate::shared::{Shared, Told, parts};
+use crate::update::Sums;
+
+/// What one of several ranks has of a run, and sends to others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RankShare {
+    /// Elements whose forces it computes.
+    pub elements: usize,
+    /// Nodes whose motion it computes, those included that others compute too.
+    pub nodes: usize,
+    /// Bytes that it sends in each step, by the count of these nodes.
+    pub halo_bytes: u64,
+    /// Bytes that it has sent so far: with what the first rank is given where impacts begin or end, and where somebody looks.
+    pub sent_bytes: u64,
+}
+
+impl Driver {
+    /// Shares the run, whose state all ranks have, with others. `watched`: nodes (system numbers) whose motion the first rank is to have
+    /// after each step; all ranks ask together.
+    ///
+    /// # Errors
+    /// [`Error::NotOnRanks`].
+    pub fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
+        if ranks.count() == 1 {
+            return Ok(());
+        }
+        let system = Arc::clone(&self.system);
+        if let Some(why) = super::unfit::why_not_on_ranks(&system) {
+            return Err(Error::NotOnRanks { why });
+        }
+        let Some(direct) = &mut self.direct else {
+            return Ok(());
+        };
+        let elements = parts(&system, ranks.count());
+        let shared = Shared::new(&system, ranks, (watched, elements));
+        direct.blocks = shared.blocks(&system);
+        direct.sums = vec![Sums::default(); direct.blocks.len()];
+        self.shared = Some(Box::new(shared));
+        self.several = true;
+        Ok(())
+    }
+
+    /// Whether several ranks take the steps.
+    pub(super) fn is_shared(&self) -> bool {
+        self.several
+    }
+
+    /// What this rank has and sends; none of a run in one process.
+    pub fn rank_share(&self) -> Option<RankShare> {
+        let shared = self.shared.as_ref()?;
+        let elements = shared.bodies().flatten();
+        Some(RankShare {
+            elements: elements.map(|share| share.places().len()).sum(),
+            nodes: shared.halo.present.len(),
+            halo_bytes: shared.halo.bytes(self.system.dim, shared.ranks.rank()),
+            sent_bytes: shared.ranks.sent_bytes(),
+        })
+    }
+
+    /// Takes the attempt on all ranks.
+    pub(super) fn step_on_ranks(
+        &mut self,
+        shared: &mut Shared,
+        direct: &mut Direct,
+        clean: bool,
+    ) -> Result<(), Error> {
+        let (begin, before) = (Instant::now(), self.phases);
+        let dim = self.system.dim;
+        self.begin_leap(direct, clean);
+        self.place_end(direct);
+        let forced = self.forces_on_ranks(shared, direct);
+        let loads = self.loads_of_end(direct.loaded);
+        let mut failed = forced.err();
+        if shared.is_first() {
+            self.follow_interface();
+            if failed.is_none() {
+                failed = self.touch(direct, loads).err();
+            }
+        }
+        let forces = &mut self.next.motion.contact_force;
+        shared.pass_contact_forces(dim, forces, |node| direct.touch(node));
+        self.count_contact(begin, before);
+        let begin = Instant::now();
+        self.end_motion(direct, loads);
+        direct.sum_parts();
+        let rank = shared.ranks.rank();
+        self.report_supports(loads, &|node| shared.halo.counts(node, rank));
+        let told = Told {
+            failed: failed.is_some(),
+            event: shared.is_first() && self.impacts_change(),
+        };
+        let energies = (&mut self.stored, &mut self.reactions[..]);
+        let told = shared.sum_up(&mut direct.parts, energies, &told);
+        if told.failed {
+            return Err(of_ranks(&shared.ranks, failed));
+        }
+        let sums = direct.total(self.system.axisymmetric);
+        self.know_end(&sums, direct);
+        if told.event {
+            let velocities = [&mut self.state.motion.v[..], &mut self.next.motion.v];
+            shared.gather_velocities(dim, velocities);
+        }
+        match shared.is_first() {
+            true => self.end_directly(&sums, direct),
+            false => self.next.time = self.state.time + self.dt,
+        }
+        self.phases.balance += begin.elapsed();
+        Ok(())
+    }
+
+    /// Internal forces and histories of the end, at the nodes of this rank.
+    fn forces_on_ranks(&mut self, shared: &mut Shared, direct: &Direct) -> Result<(), Error> {
+        let begin = Instant::now();
+        self.force_sweeps += 1;
+        let dim = self.system.dim;
+        for block in &direct.blocks {
+            let range = dim * block.nodes[0]..dim * block.nodes[1];
+            self.next.motion.internal_force[range].fill(0.0);
+        }
+        let motions = (&self.state.motion, &mut self.next.motion, self.dt);
+        let stored = shared.forces(&self.system, motions);
+        self.phases.forces += begin.elapsed();
+        self.stored = stored?;
+        Ok(())
+    }
+
+    /// Whether an impact of a contact begins or ends in the step.
+    fn impacts_change(&self) -> bool {
+        let forces = &self.next.interface.force;
+        (0..self.system.contacts.len()).any(|contact| {
+            let mut points = self.active.within(self.system.points_of(contact));
+            let active = points.any(|point| forces[point] != 0.0);
+            self.state.records.contacts[contact].changes(active)
+        })
+    }
+
+    /// That no entry of the attempt that this rank has is infinite or no number, on any rank.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub(super) fn check_finite_on_ranks(&self) -> Result<(), Error> {
+        let found = self.check_finite();
+        let Some(shared) = &self.shared else {
+            return found;
+        };
+        let text = found.err().map(|error| error.to_string());
+        match shared.ranks.first_text(text.as_deref()) {
+            None => Ok(()),
+            Some((rank, cause)) => Err(Error::OnRank { rank, cause }),
+        }
+    }
+
+    /// Brings the motion of all nodes to all ranks.
+    pub(super) fn spread_on_ranks(&mut self) {
+        if let Some(shared) = &mut self.shared {
+            shared.spread(self.system.dim, &mut self.state.motion);
+        }
+    }
+
+    /// See [`Stepper::agree`](crate::Stepper::agree).
+    pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
+        let Some(shared) = &self.shared else {
+            return own;
+        };
+        let mut said = vec![f64::from(own as u8)];
+        shared.ranks.broadcast(&mut said);
+        match said[0] as u8 {
+            0 => Going::On,
+            1 => Going::Stopped,
+            _ => Going::Failed,
+        }
+    }
+
+    /// See [`Stepper::bring`](crate::Stepper::bring).
+    pub(super) fn bring_on_ranks(&mut self, looks: bool) {
+        let Some(mut shared) = self.shared.take() else {
+            return;
+        };
+        let (system, dim) = (Arc::clone(&self.system), self.system.dim);
+        let (step, records) = (self.state.step, &self.state.records);
+        let is_due = shared.is_first()
+            && step > self.looked
+            && records.small.is_due(step, &self.state.ledger);
+        self.looked = step;
+        let looks_before = records.small.looks;
+        let mut said = [f64::from(looks), f64::from(is_due), looks_before as f64].to_vec();
+        shared.ranks.broadcast(&mut said);
+        let (looks, is_due) = (said[0] != 0.0, said[1] != 0.0);
+        match looks {
+            true => shared.gather(dim, &mut self.state.motion),
+            false => shared.watch(dim, &mut self.state.motion),
+        }
+        self.report.partial = !looks && shared.is_first();
+        if is_due {
+            let u = &self.state.motion.u;
+            let found = shared.distortions(u, said[2] as usize + 1);
+            if shared.is_first() {
+                let of = |body: usize, _: (&[f64], usize), _: &Distortion| found[body];
+                self.watch.look(&system, &of, &mut self.state);
+            }
+        }
+        self.shared = Some(shared);
+    }
+}
+
+/// The error of a step that has failed on some rank, on all of them the same.
+fn of_ranks(ranks: &Ranks, own: Option<Error>) -> Error {
+    let text = own.map(|error| error.to_string());
+    let (rank, cause) = ranks.first_text(text.as_deref()).unwrap_or_default();
+    Error::OnRank { rank, cause }
+}
+
+impl Shared {
+    /// Rotation and strain of the elements of each body at the displacement `u`, the largest of all ranks; none at finite strain. `looks`: which
+    /// point of each element is looked at.
+    fn distortions(&self, u: &[f64], looks: usize) -> Vec<Option<Distortion>> {
+        let none = Distortion::default();
+        let of_body = |shares: &[carom_bodies::Share; 2]| {
+            let mut found = [[0.0; 2]; 2];
+            let mut small = false;
+            for share in shares {
+                let Some(own) = share.solid().distortion(u, looks, &none) else {
+                    continue;
+                };
+                small = true;
+                for (most, one) in found.iter_mut().zip([own.rotation, own.strain]) {
+                    if let Some(&place) = share.places().get(one.cell as usize)
+                        && one.value > most[0]
+                    {
+                        *most = [one.value, f64::from(place)];
+                    }
+                }
+            }
+            (small, found)
+        };
+        let own: Vec<(bool, [[f64; 2]; 2])> = self.bodies().map(of_body).collect();
+        let values = own.iter().flat_map(|(_, found)| found.map(|one| one[0]));
+        let mut values: Vec<f64> = values.collect();
+        self.ranks.reduce(&mut [], &mut values);
+        // of ranks with the same value the first place
+        let places = own.iter().flat_map(|(_, found)| *found);
+        let places = places.zip(&values);
+        let mut places: Vec<f64> = places
+            .map(|([value, place], most)| {
+                if value == *most {
+                    -place
+                } else {
+                    f64::NEG_INFINITY
+                }
+            })
+            .collect();
+        self.ranks.reduce(&mut [], &mut places);
+        let extreme = |k: usize| Extreme {
+            value: values[k],
+            cell: -places[k] as u32,
+        };
+        let distortion = |(body, (small, _)): (usize, &(bool, _))| {
+            small.then(|| Distortion {
+                rotation: extreme(2 * body),
+                strain: extreme(2 * body + 1),
+            })
+        };
+        own.iter().enumerate().map(distortion).collect()
+    }
+}

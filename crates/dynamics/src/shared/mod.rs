@@ -1,0 +1,316 @@
+//! A run that several processes compute together, in explicit steps.
+//!
+//! All ranks have the same [`System`] and vectors of its length, but each computes the forces of its own elements and the motion of their
+//! nodes; other entries are those of some earlier step, and nobody reads them. The first rank has all contacts, the ledger, the
+//! records and the results. What it needs of the others comes with the steps ([`Shared::sum_up`]) or where somebody looks
+//! ([`Shared::gather`]).
+
+pub(crate) mod halo;
+mod parts;
+mod whole;
+
+use carom_bodies::{Error as BodyError, Placement, Share, Stored};
+use carom_ranks::{Message, Ranks};
+
+use crate::blocks::{Block, blocks_of};
+use crate::error::Error;
+use crate::resultant::Resultant;
+use crate::system::{Motion, System};
+use crate::update::Sums;
+use halo::{Halo, messages, pack, unpack};
+pub(crate) use parts::parts;
+
+/// What a rank has of a run.
+pub(crate) struct Shared {
+    pub(crate) ranks: Ranks,
+    pub(crate) halo: Halo,
+    /// Of each body the elements at nodes that others have too, and the others.
+    bodies: Vec<[Share; 2]>,
+    sends: Vec<Message>,
+    receives: Vec<Message>,
+    /// Forces of this rank's elements on the shared nodes, N.
+    own: Vec<f64>,
+    /// Forces of the contacts, from the first rank to the others.
+    touched: Vec<Message>,
+    /// Numbers that are summed over the ranks, and those of which the largest counts.
+    sums: Vec<f64>,
+    largest: Vec<f64>,
+    whole: whole::Whole,
+}
+
+/// What a step tells all ranks, beside its sums.
+pub(crate) struct Told {
+    /// Whether it has failed on any.
+    pub(crate) failed: bool,
+    /// Whether an impact begins or ends in it.
+    pub(crate) event: bool,
+}
+
+impl Shared {
+    /// Of this rank. `watched`: nodes whose motion the first rank has after each step; `elements`: ranks of the elements of each body, solids all of them.
+    pub(crate) fn new(
+        system: &System,
+        ranks: &Ranks,
+        (watched, elements): (&[u32], Vec<Vec<u32>>),
+    ) -> Shared {
+        let rank = ranks.rank();
+        let halo = Halo::new(system, &elements, rank);
+        let mut border = vec![false; system.x.len()];
+        for &node in &halo.shared {
+            border[node as usize] = true;
+        }
+        let shares = |(body, parts): (&carom_bodies::Body, &Vec<u32>)| {
+            let (mut lists, mut place) = ([Vec::new(), Vec::new()], 0);
+            body.each_element(&mut |nodes| {
+                if parts[place as usize] as usize == rank {
+                    let inside = !nodes.iter().any(|&node| border[node as usize]);
+                    lists[usize::from(inside)].push(place);
+                }
+                place += 1;
+            });
+            body.as_solid()
+                .map(|solid| lists.map(|list| solid.share(list)))
+        };
+        let bodies = system.bodies.iter().zip(&elements).filter_map(shares);
+        let dim = system.dim;
+        Shared {
+            bodies: bodies.collect(),
+            sends: messages(&halo.sends, dim),
+            receives: messages(&halo.receives, dim),
+            own: vec![0.0; dim * halo.shared.len()],
+            touched: messages(&halo.touched, dim),
+            sums: Vec::new(),
+            largest: Vec::new(),
+            whole: whole::Whole::new(system, (&halo, rank), watched, &elements),
+            halo,
+            ranks: ranks.clone(),
+        }
+    }
+
+    /// Whether this is the first rank.
+    pub(crate) fn is_first(&self) -> bool {
+        self.ranks.is_first()
+    }
+
+    /// Of each body the elements at nodes that others have too, and the others.
+    pub(crate) fn bodies(&self) -> impl Iterator<Item = &[Share; 2]> {
+        self.bodies.iter()
+    }
+
+    /// The blocks of the nodes that this rank has.
+    pub(crate) fn blocks(&self, system: &System) -> Vec<Block> {
+        let rank = self.ranks.rank();
+        blocks_of(system, &self.halo.present, &|node| {
+            self.halo.counts(node, rank)
+        })
+    }
+
+    /// Internal forces at the nodes of this rank, N, which are zero before, and histories of its elements. After an error the others have
+    /// forces of no use.
+    pub(crate) fn forces(
+        &mut self,
+        system: &System,
+        (old, new, dt): (&Motion, &mut Motion, f64),
+    ) -> Result<Stored, Error> {
+        let Motion {
+            u,
+            history,
+            internal_force,
+            ..
+        } = new;
+        let Shared {
+            bodies,
+            ranks,
+            halo,
+            sends,
+            receives,
+            ..
+        } = self;
+        let mut sum = Ok(Stored::default());
+        let mut add = |side: usize, forces: &mut [f64]| {
+            let ranges = &system.nonlinear.histories;
+            for (shares, range) in bodies.iter_mut().zip(ranges) {
+                let at = Placement {
+                    u,
+                    v: &[],
+                    from: None,
+                    frames: &[],
+                    dt,
+                    old: &old.history[range.clone()],
+                };
+                let given = shares[side].force(&at, &mut history[range.clone()], forces);
+                include(&mut sum, given);
+            }
+            sum.is_ok()
+        };
+        let dim = system.dim;
+        let known = add(0, internal_force);
+        for (with, message) in halo.sends.iter().zip(&mut *sends) {
+            match known {
+                true => pack(&with.nodes, dim, internal_force, &mut message.values),
+                false => message.values.fill(0.0),
+            }
+        }
+        ranks.exchange(sends, receives, || {
+            add(1, internal_force);
+        });
+        self.add_up(dim, internal_force);
+        Ok(sum?)
+    }
+
+    /// Adds what the ranks give at shared nodes, in their order.
+    fn add_up(&mut self, dim: usize, forces: &mut [f64]) {
+        let Shared {
+            halo,
+            own,
+            receives,
+            ranks,
+            ..
+        } = self;
+        pack(&halo.shared, dim, forces, own);
+        for &node in &halo.shared {
+            forces[dim * node as usize..][..dim].fill(0.0);
+        }
+        let mut own = Some(&own[..]);
+        for (with, message) in halo.receives.iter().zip(receives) {
+            if with.rank > ranks.rank()
+                && let Some(own) = own.take()
+            {
+                add(&halo.shared, dim, own, forces);
+            }
+            add(&with.nodes, dim, &message.values, forces);
+        }
+        if let Some(own) = own {
+            add(&halo.shared, dim, own, forces);
+        }
+    }
+
+    /// Gives the forces of the contacts to the ranks whose elements have their nodes; `touch` is told of nodes with a force there.
+    pub(crate) fn pass_contact_forces(
+        &mut self,
+        dim: usize,
+        forces: &mut [f64],
+        mut touch: impl FnMut(usize),
+    ) {
+        let lists = self.halo.touched.iter().zip(&mut self.touched);
+        if self.ranks.is_first() {
+            for (with, message) in lists {
+                pack(&with.nodes, dim, forces, &mut message.values);
+            }
+            return self.ranks.exchange(&self.touched, &mut [], || ());
+        }
+        self.ranks.exchange(&[], &mut self.touched, || ());
+        for (with, message) in self.halo.touched.iter().zip(&self.touched) {
+            unpack(&with.nodes, dim, &message.values, forces);
+            let values = message.values.chunks_exact(dim);
+            for (&node, _) in with
+                .nodes
+                .iter()
+                .zip(values)
+                .filter(|(_, f)| f.iter().any(|f| *f != 0.0))
+            {
+                touch(node as usize);
+            }
+        }
+    }
+
+    /// Brings the motion of the watched nodes to the first rank.
+    pub(crate) fn watch(&mut self, dim: usize, motion: &mut Motion) {
+        self.whole.watch(&self.ranks, dim, motion);
+    }
+
+    /// Brings the velocities of all nodes at the start and the end of a step to the first rank.
+    pub(crate) fn gather_velocities(&mut self, dim: usize, velocities: [&mut [f64]; 2]) {
+        self.whole.gather_velocities(&self.ranks, dim, velocities);
+    }
+
+    /// Brings the motion of all nodes and the histories of all elements to the first rank.
+    pub(crate) fn gather(&mut self, dim: usize, motion: &mut Motion) {
+        self.whole.gather(&self.ranks, dim, motion);
+    }
+
+    /// Brings displacements, velocities and histories of all to all ranks.
+    pub(crate) fn spread(&mut self, dim: usize, motion: &mut Motion) {
+        self.whole.spread(&self.ranks, dim, motion);
+    }
+
+    /// Sums the parts, the energies and the forces of supports of a step over the ranks, and tells whether it has `failed` on any, or an
+    /// impact begins or ends.
+    pub(crate) fn sum_up(
+        &mut self,
+        parts: &mut [Sums],
+        (stored, supports): (&mut Stored, &mut [Resultant]),
+        told: &Told,
+    ) -> Told {
+        let Shared {
+            sums,
+            largest,
+            ranks,
+            ..
+        } = self;
+        sums.clear();
+        largest.clear();
+        for part in parts.iter() {
+            sums.extend(part.numbers());
+            largest.push(part.fastest);
+        }
+        for support in supports.iter() {
+            sums.extend(support.linear.iter().chain(&support.angular));
+        }
+        sums.extend(energies(stored).map(|energy| *energy));
+        largest.push(stored.compression);
+        largest.extend([told.failed, told.event].map(f64::from));
+        ranks.reduce(sums, largest);
+        let (mut sums, mut largest) = (sums.iter().copied(), largest.iter().copied());
+        let mut next = || sums.next().unwrap_or_default();
+        for part in parts {
+            part.take(&mut next);
+            part.fastest = largest.next().unwrap_or_default();
+        }
+        for support in supports {
+            let entries = support.linear.iter_mut().chain(&mut support.angular);
+            entries.for_each(|entry| *entry = next());
+        }
+        for energy in energies(stored) {
+            *energy = next();
+        }
+        stored.compression = largest.next().unwrap_or_default();
+        let mut flag = || largest.next().is_some_and(|flag| flag != 0.0);
+        Told {
+            failed: flag(),
+            event: flag(),
+        }
+    }
+}
+
+/// Adds the entries of nodes to a system vector.
+fn add(nodes: &[u32], dim: usize, values: &[f64], vector: &mut [f64]) {
+    for (&node, given) in nodes.iter().zip(values.chunks_exact(dim)) {
+        let sums = &mut vector[dim * node as usize..][..dim];
+        for (sum, given) in sums.iter_mut().zip(given) {
+            *sum += given;
+        }
+    }
+}
+
+/// The energies that are summed.
+fn energies(stored: &mut Stored) -> [&mut f64; 5] {
+    let Stored {
+        strain,
+        hardening,
+        dissipated,
+        hourglass,
+        viscous,
+        ..
+    } = stored;
+    [strain, hardening, dissipated, hourglass, viscous]
+}
+
+/// Adds energies, or keeps the first error.
+fn include(sum: &mut Result<Stored, BodyError>, given: Result<Stored, BodyError>) {
+    match (&mut *sum, given) {
+        (Ok(all), Ok(part)) => all.include(&part),
+        (Ok(_), Err(error)) => *sum = Err(error),
+        (Err(_), _) => {}
+    }
+}

@@ -1,0 +1,17 @@
+//! Processes that compute one run together, their *ranks*: who has which elements, and the messages between them.
+//!
+//! [`Ranks`] is what the rest of the program sees, in one process too. Its messages go over MPI with the feature `mpi`, or between the
+//! threads of one process ([`threads`]), as tests do without MPI.
+
+mod link;
+#[cfg(feature = "mpi")]
+mod message_passing;
+mod partition;
+mod threads;
+
+pub use link::{Message, Ranks};
+pub use partition::partition;
+pub use threads::threads;
+
+#[cfg(feature = "mpi")]
+pub use message_passing::{Session, begin};

@@ -1,0 +1,157 @@
+//! Ranks and the messages between them.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Numbers to or from a rank; their count is known to both.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Message {
+    /// The other rank.
+    pub with: usize,
+    /// What is sent, or the room for what is received.
+    pub values: Vec<f64>,
+}
+
+/// What carries the messages.
+pub(crate) trait Link: Send + Sync {
+    /// This rank, and the number of all.
+    fn place(&self) -> [usize; 2];
+    /// Sends and receives; computes `meanwhile` while messages are under way.
+    fn exchange(&self, sends: &[Message], receives: &mut [Message], meanwhile: &mut dyn FnMut());
+    /// Replaces numbers by their sums, and others by their largest, over all ranks: the same bits on all.
+    fn reduce(&self, sums: &mut [f64], largest: &mut [f64]);
+    /// Gives what the first rank has to all others.
+    fn broadcast(&self, values: &mut Vec<f64>);
+}
+
+/// The ranks of a run as one of them sees them.
+#[derive(Clone)]
+pub struct Ranks {
+    link: Option<Arc<dyn Link>>,
+    /// Numbers sent by exchanges.
+    sent: Arc<AtomicU64>,
+}
+
+impl fmt::Debug for Ranks {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "rank {} of {}", self.rank(), self.count())
+    }
+}
+
+impl Default for Ranks {
+    fn default() -> Ranks {
+        Ranks::alone()
+    }
+}
+
+impl Ranks {
+    /// One process.
+    pub fn alone() -> Ranks {
+        Ranks {
+            link: None,
+            sent: Arc::default(),
+        }
+    }
+
+    pub(crate) fn over(link: Arc<dyn Link>) -> Ranks {
+        Ranks {
+            link: Some(link),
+            sent: Arc::default(),
+        }
+    }
+
+    fn place(&self) -> [usize; 2] {
+        self.link.as_ref().map_or([0, 1], |link| link.place())
+    }
+
+    /// This rank, from 0.
+    pub fn rank(&self) -> usize {
+        self.place()[0]
+    }
+
+    /// Number of ranks.
+    pub fn count(&self) -> usize {
+        self.place()[1]
+    }
+
+    /// Whether this is the first rank, which has the contacts and writes the results.
+    pub fn is_first(&self) -> bool {
+        self.rank() == 0
+    }
+
+    /// Sends and receives messages; computes `meanwhile` while they are under way. Every send has its receive on the other rank, in the
+    /// same order.
+    pub fn exchange(
+        &self,
+        sends: &[Message],
+        receives: &mut [Message],
+        mut meanwhile: impl FnMut(),
+    ) {
+        let count: usize = sends.iter().map(|message| message.values.len()).sum();
+        self.sent.fetch_add(count as u64, Ordering::Relaxed);
+        match &self.link {
+            Some(link) => link.exchange(sends, receives, &mut meanwhile),
+            None => meanwhile(),
+        }
+    }
+
+    /// Bytes that this rank has sent in exchanges so far.
+    pub fn sent_bytes(&self) -> u64 {
+        8 * self.sent.load(Ordering::Relaxed)
+    }
+
+    /// Replaces numbers by their sums, and others by their largest, over all ranks: the same bits on all.
+    pub fn reduce(&self, sums: &mut [f64], largest: &mut [f64]) {
+        if let Some(link) = &self.link {
+            link.reduce(sums, largest);
+        }
+    }
+
+    /// Gives what the first rank has to all others.
+    pub fn broadcast(&self, values: &mut Vec<f64>) {
+        if let Some(link) = &self.link {
+            link.broadcast(values);
+        }
+    }
+
+    /// The text of the first rank that has one, with that rank; none if none has. All ranks ask together.
+    pub fn first_text(&self, own: Option<&str>) -> Option<(usize, String)> {
+        let [rank, count] = self.place();
+        // the first of those that have one is the largest of these
+        let mut first = [own.map_or(0.0, |_| (count - rank) as f64)];
+        self.reduce(&mut [], &mut first);
+        if first[0] == 0.0 {
+            return None;
+        }
+        let first = count - first[0] as usize;
+        let own = own.filter(|_| rank == first).unwrap_or("");
+        let mut text: Vec<f64> = own.bytes().map(f64::from).collect();
+        self.pass_to_first(first, &mut text);
+        self.broadcast(&mut text);
+        let bytes: Vec<u8> = text.iter().map(|byte| *byte as u8).collect();
+        Some((first, String::from_utf8_lossy(&bytes).into_owned()))
+    }
+
+    /// Brings numbers of a rank to the first one.
+    fn pass_to_first(&self, from: usize, values: &mut Vec<f64>) {
+        let rank = self.rank();
+        if from == 0 || rank != 0 && rank != from {
+            return;
+        }
+        let message = |values: Vec<f64>| {
+            let with = if rank == 0 { from } else { 0 };
+            [Message { with, values }]
+        };
+        if rank == from {
+            self.exchange(&message(vec![values.len() as f64]), &mut [], || ());
+            self.exchange(&message(std::mem::take(values)), &mut [], || ());
+        } else {
+            let mut length = message(vec![0.0]);
+            self.exchange(&[], &mut length, || ());
+            let mut received = message(vec![0.0; length[0].values[0] as usize]);
+            self.exchange(&[], &mut received, || ());
+            *values = std::mem::take(&mut received[0].values);
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Messages over MPI. Nothing else names it.
+
+use std::sync::Arc;
+
+use mpi::Threading;
+use mpi::collective::SystemOperation;
+use mpi::environment::Universe;
+use mpi::request::multiple_scope;
+use mpi::topology::SimpleCommunicator;
+use mpi::traits::{Communicator, CommunicatorCollectives, Destination, Root, Source};
+
+use crate::link::{Link, Message, Ranks};
+
+/// MPI from its beginning to its end.
+pub struct Session {
+    _universe: Universe,
+}
+
+impl Session {
+    /// Ends all ranks at once, when one of them cannot go on and the others do not know.
+    pub fn abort(&self, code: i32) -> ! {
+        SimpleCommunicator::world().abort(code)
+    }
+}
+
+/// Begins MPI; the ranks of this run. None if it has begun already, or does not let several threads compute.
+pub fn begin() -> Option<(Session, Ranks)> {
+    let (universe, threading) = mpi::initialize_with_threading(Threading::Funneled)?;
+    if threading < Threading::Funneled {
+        return None;
+    }
+    let session = Session {
+        _universe: universe,
+    };
+    let ranks = match SimpleCommunicator::world().size() {
+        1 => Ranks::alone(),
+        _ => Ranks::over(Arc::new(World)),
+    };
+    Some((session, ranks))
+}
+
+/// All ranks that MPI has started. The communicator is a pointer of MPI's and is asked for anew in each call.
+struct World;
+
+/// A rank or a number of ranks, which MPI counts with sign.
+fn number(of: i32) -> usize {
+    usize::try_from(of).unwrap_or(0)
+}
+
+impl Link for World {
+    fn place(&self) -> [usize; 2] {
+        let world = SimpleCommunicator::world();
+        [number(world.rank()), number(world.size())]
+    }
+
+    fn exchange(&self, sends: &[Message], receives: &mut [Message], meanwhile: &mut dyn FnMut()) {
+        let world = SimpleCommunicator::world();
+        let count = sends.len() + receives.len();
+        let process = |with: usize| world.process_at_rank(with as i32);
+        multiple_scope(count, |scope, requests| {
+            for message in receives.iter_mut() {
+                let from = process(message.with);
+                requests.add(from.immediate_receive_into(scope, &mut message.values[..]));
+            }
+            for message in sends {
+                let to = process(message.with);
+                requests.add(to.immediate_send(scope, &message.values[..]));
+            }
+            meanwhile();
+            let mut done = Vec::with_capacity(count);
+            requests.wait_all(&mut done);
+        });
+    }
+
+    fn reduce(&self, sums: &mut [f64], largest: &mut [f64]) {
+        let world = SimpleCommunicator::world();
+        let all = [
+            (sums, SystemOperation::sum()),
+            (largest, SystemOperation::max()),
+        ];
+        for (values, operation) in all {
+            if !values.is_empty() {
+                let own = values.to_vec();
+                world.all_reduce_into(&own[..], values, operation);
+            }
+        }
+    }
+
+    fn broadcast(&self, values: &mut Vec<f64>) {
+        let world = SimpleCommunicator::world();
+        let first = world.process_at_rank(0);
+        let mut length = values.len() as u64;
+        first.broadcast_into(&mut length);
+        values.resize(length as usize, 0.0);
+        first.broadcast_into(&mut values[..]);
+    }
+}
