@@ -19,12 +19,11 @@ use std::sync::Arc;
 use carom_contact::Sliding;
 
 use super::deletion::as_left;
-use super::mixing::{LARGEST, Mixing};
+use super::mixing::LARGEST;
+use super::refined::Refined;
 use super::residual::Standing;
 use super::{Driver, Vectors};
-use crate::coulomb::Slip;
 use crate::error::Error;
-use crate::state::InterfaceState;
 use crate::system::System;
 
 /// Most passes of an iteration.
@@ -38,24 +37,6 @@ const WITHIN: f64 = 0.01;
 
 /// Imbalance over that of the pass before from which on passes are of no use.
 const STALLED: f64 = 0.9;
-
-/// What the passes need.
-#[derive(Default)]
-pub(super) struct Refined {
-    mixing: Mixing,
-    /// x and residual where the iteration begins.
-    x: Vec<f64>,
-    residual: Vec<f64>,
-    /// d, and K̂ d.
-    motion: Vec<f64>,
-    product: Vec<f64>,
-    /// What it was before the last pass, and the contacts.
-    before: Vec<f64>,
-    interface: InterfaceState,
-    slips: Vec<Slip>,
-    /// Whether the columns of the contact points are those of the iteration, wherever points are.
-    pub(super) holds_columns: bool,
-}
 
 impl Driver {
     /// Whether the problem of an iteration is solved with bodies alone linearised.

@@ -18,7 +18,7 @@ use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
-use super::refine::Refined;
+use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
