@@ -33,7 +33,7 @@ const PASSES: usize = 12;
 const LEFT: f64 = 0.1;
 
 /// Imbalance of the last pass, and defects of contact laws, over the tolerances of the iterations.
-const WITHIN: f64 = 0.01;
+pub(super) const WITHIN: f64 = 0.01;
 
 /// Imbalance over that of the pass before from which on passes are of no use.
 const STALLED: f64 = 0.9;
