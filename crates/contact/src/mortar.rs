@@ -76,9 +76,15 @@ impl Mortar {
     }
 
     fn points(&self, x: &[[f64; 3]], nodes: &[u32]) -> Vec<Point> {
-        let mut areas = vec![0.0; nodes.len()];
+        let (mut areas, mut radii) = (vec![0.0; nodes.len()], vec![0.0_f64; nodes.len()]);
         for index in 0..self.faces.len() {
-            let rule = self.faces[index].kind.table().mass_rule;
+            let face = &self.faces[index];
+            let rule = face.kind.table().mass_rule;
+            for &number in &self.multipliers[index] {
+                if let Some(most) = radii.get_mut(number as usize) {
+                    *most = most.max(face.radius.unwrap_or(0.0));
+                }
+            }
             for (xi, weight) in rule.points.iter().zip(rule.weights) {
                 let weight = weight * self.measure(index, xi, x);
                 for (&number, phi) in self.multipliers[index].iter().zip(self.phi(index, xi)) {
@@ -89,9 +95,9 @@ impl Mortar {
             }
         }
         let total: f64 = areas.iter().sum();
-        let areas = nodes.iter().zip(areas);
-        areas
-            .map(|(&node, area)| Point::at_node(node, area, area / total))
+        let points = nodes.iter().zip(areas).zip(radii);
+        points
+            .map(|((&node, area), radius)| Point::at_node(node, area, area / total).around(radius))
             .collect()
     }
 

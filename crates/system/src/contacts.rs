@@ -58,7 +58,7 @@ impl System {
         };
         let mut contacts = self.contacts.iter().zip(&self.secondary_faces);
         let cause = |(contact, faces): (&Contact, &[Face])| {
-            cause(contact).or_else(|| unfit_around_axes(contact, faces))
+            cause(contact).or_else(|| unfit_around_axes(contact, faces, self.dim))
         };
         match contacts.find_map(|pair| Some((pair.0, cause((pair.0, &pair.1[..]))?))) {
             None => Ok(()),
@@ -71,19 +71,19 @@ impl System {
 }
 
 /// Why a contact with surfaces around axes cannot be as it is, if it cannot.
-fn unfit_around_axes(contact: &Contact, secondary: &[Face]) -> Option<&'static str> {
+fn unfit_around_axes(contact: &Contact, secondary: &[Face], dim: usize) -> Option<&'static str> {
     let target = match &contact.target {
         Target::Surface(faces) => &faces[..],
         Target::Rigid(_) => &[],
     };
-    let mut faces = secondary.iter().chain(target);
-    if !faces.any(Face::is_round) {
+    let faces = || secondary.iter().chain(target);
+    if !faces().any(Face::is_round) {
         return None;
     }
     match contact.integration {
-        Integration::Mortar { .. } => {
-            Some("surfaces around axes of beams and middles of shells have no mortar method")
-        }
+        Integration::Mortar { .. } if dim == 3 && faces().any(is_axis) => Some(
+            "in space surfaces around axes of beams have no mortar method: lines that cross have no area in common",
+        ),
         _ if contact
             .sight
             .as_ref()

@@ -135,6 +135,7 @@ mod self_contact;
 mod shapes;
 mod shell_benchmarks;
 mod shell_edges;
+mod shell_mortar;
 mod shell_sections;
 mod shell_self_contact;
 mod shell_solid;
@@ -297,6 +298,7 @@ registry! {
     sdnl111
     sdnl111_bars
     self_contact
+    shell_mortar
     shell_sections
     shell_edges
     shell_self_contact

@@ -14,8 +14,9 @@
 use std::f64::consts::PI;
 
 use carom_bodies::Rotations;
+use carom_contact::{Basis, Integration};
 use carom_dynamics::scheme::EnergyMomentum;
-use carom_dynamics::{Driver, Model, ModelTarget, Scheme};
+use carom_dynamics::{Driver, Model, ModelContact, ModelTarget, Scheme};
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, Surface};
 
@@ -46,6 +47,7 @@ struct Hairpin {
     /// Only the upper half, on the plane of symmetry.
     half: bool,
     dt: f64,
+    integration: Integration,
 }
 
 impl Hairpin {
@@ -84,7 +86,10 @@ impl Hairpin {
         };
         let scheme = Scheme::EnergyMomentum(EnergyMomentum {});
         let mut model = Model {
-            contacts: vec![contact(around, target, NOW)],
+            contacts: vec![ModelContact {
+                integration: self.integration,
+                ..contact(around, target, NOW)
+            }],
             supports,
             ..Model::new(vec![made], mesh, scheme, self.dt)
         };
@@ -189,13 +194,25 @@ pub(crate) const CHECK: Check = Check {
             Size::Quick => ([8, 1], 4e-3, 60),
             Size::Full => ([24, 3], 2e-3, 300),
         };
-        let pin = Hairpin {
-            elements,
-            half: false,
-            dt,
-        };
-        let mut rows = mirrored(pin)?;
-        rows.extend(kept(pin, steps)?);
+        let basis = Basis::Dual;
+        let mut rows = Vec::new();
+        for integration in [Integration::Node, Integration::Mortar { basis }] {
+            let pin = Hairpin {
+                elements,
+                half: false,
+                dt,
+                integration,
+            };
+            // a mean over the prongs closes at another step than the mean over a half and a wall
+            let (name, own) = match integration {
+                Integration::Node => ("nodes", [mirrored(pin)?, kept(pin, steps)?].concat()),
+                _ => ("mortar", kept(pin, steps)?),
+            };
+            rows.extend(own.into_iter().map(|row| Row {
+                quantity: format!("{name}: {}", row.quantity),
+                ..row
+            }));
+        }
         Ok(rows)
     },
 };

@@ -15,6 +15,8 @@ pub struct Merge {
     /// Rates by the motion of an obstacle, of the gap and along the tangents, m/s.
     rates: [f64; 3],
     blocks: Vec<(u32, [Vec3; 3])>,
+    /// Moments of unit forces along the tangents about the nodes of the first of `blocks`, in m; of the others they are zero.
+    moments: Vec<[Vec3; 2]>,
     /// Place of each node in `blocks`.
     places: Vec<u32>,
 }
@@ -25,6 +27,7 @@ impl Merge {
         for (node, _) in self.blocks.drain(..) {
             self.places[node as usize] = u32::MAX;
         }
+        self.moments.clear();
         self.gap = 0.0;
         self.normal = Vec3::zeros();
         self.resultants = [Vec3::zeros(); 3];
@@ -48,17 +51,28 @@ impl Merge {
             *sum += tangent;
         }
         for (i, (node, c)) in stencil.relative().enumerate() {
-            let block = self.block(node);
+            let at = self.block(node);
+            let block = &mut self.blocks[at].1;
             for (block, vector) in block.iter_mut().zip(&vectors) {
                 *block += vector * c;
             }
             if let Some(turning) = &turning {
                 block[0] += turning[i] * weight;
             }
+            let reach = stencil.reach(i);
+            if reach != 0.0 {
+                let zero = [Vec3::zeros(); 2];
+                self.moments.resize(self.moments.len().max(at + 1), zero);
+                let arm = Vec3::from(normal) * (c * reach);
+                for (moment, tangent) in self.moments[at].iter_mut().zip(&vectors[1..]) {
+                    *moment += arm.cross(tangent);
+                }
+            }
         }
     }
 
-    fn block(&mut self, node: u32) -> &mut [Vec3; 3] {
+    /// Place of a node in the blocks.
+    fn block(&mut self, node: u32) -> usize {
         if self.places.len() <= node as usize {
             self.places.resize(node as usize + 1, u32::MAX);
         }
@@ -67,7 +81,7 @@ impl Merge {
             *place = self.blocks.len() as u32;
             self.blocks.push((node, [Vec3::zeros(); 3]));
         }
-        &mut self.blocks[*place as usize].1
+        *place as usize
     }
 
     /// Makes a point of the rows, or the one after the last, that of the sum; its normal is the mean one, and the directions of the tangents are square to it.
@@ -91,6 +105,11 @@ impl Merge {
             rows.add_node(places, *node, &blocks[0].into());
             for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
                 rows.add_node(places, *node, &blocks[k + 1].into());
+            }
+        }
+        for ((node, _), moments) in self.blocks.iter().zip(&self.moments) {
+            for (rows, moment) in tangents[..dim - 1].iter_mut().zip(moments) {
+                rows.add_moment(places, *node, &(*moment).into());
             }
         }
     }

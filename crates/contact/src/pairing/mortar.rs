@@ -15,10 +15,14 @@
 //! weights are found anew at each configuration and held in derivatives, so Newton's method with sliding converges fast
 //! but not quadratically; its residual is exact.
 //!
+//! Round a middle of a shell, or the axis of a beam in the plane, the surface is at its radius on both sides. A cell of such a face faces what is
+//! on the side of the closest point: one side at a time.
+//!
 //! Segment-to-segment mortar: Puso and Laursen (2004), Popp, Gee and Wall (2009); dual bases: Wohlmuth (2000). Known from
 //! these, derived here; the gap of a point along the primary normal, rather than an averaged secondary one, is a choice
 //! of this project.
 
+use carom_algebra::tensor::Vec3;
 use carom_elements::Element;
 use carom_mesh::{Bounds, Face, Projection, project};
 
@@ -175,17 +179,17 @@ impl<'a> Sweep<'a> {
         let view = contact.view(self.mortar.multipliers[self.index][0] as usize);
         for cell in cells(element, &x[..element.nodes]) {
             let target = (self.places, faces);
-            let within = FAR * radius(&cell);
+            let within = FAR * radius(&cell) + self.radius() + contact.widest();
             let Some((closest, _)) = search.closest(target, view, &cell.middle(), within) else {
                 continue;
             };
+            let side = self.side(&cell, &closest);
             search
                 .faces
                 .overlapping(target, &shade(&cell, &closest), found);
             for &item in found.iter() {
                 let face = &faces[item as usize];
-                let low = is_linear(element) && is_linear(face.kind.table());
-                self.over_face((&cell, low), face, |foot| {
+                self.over_face((&cell, side), face, |foot| {
                     search.faces.shows(view, item, foot)
                 });
             }
@@ -194,18 +198,25 @@ impl<'a> Sweep<'a> {
 
     fn over_face(
         &mut self,
-        (cell, low): (&Cell, bool),
+        (cell, side): (&Cell, f64),
         face: &Face,
         sees: impl Fn(&Projection) -> bool,
     ) {
         let (x, element) = (self.places.of_face(face), face.kind.table());
         let x = &x[..element.nodes];
+        let low = is_linear(self.face().kind.table()) && is_linear(element);
+        let round = face.is_round();
+        // a surface on both sides of its middle is in sight from behind as well
+        let both = round || self.face().is_round();
+        let outward = cell.normal() * side;
         for other in cells(element, x) {
-            cell.shared(&other, low, |sample| {
+            cell.shared(&other, (side, round, low), |sample| {
                 let point = self.point(&sample.xi);
                 let place = point.place(self.places);
                 let foot = project(face, x, &place);
-                if sees(&foot) {
+                let way = Vec3::from(foot.point) - Vec3::from(place);
+                let ahead = !both || outward.dot(&way) > 0.0;
+                if ahead && sees(&foot) {
                     let stencil = Stencil::on_face(self.places, &point, &place, &foot, face);
                     self.push(&sample, stencil);
                 }
@@ -214,7 +225,21 @@ impl<'a> Sweep<'a> {
     }
 
     fn point(&self, xi: &[f64; 3]) -> Point {
-        Point::on_face(self.face(), xi)
+        Point::on_face(self.face(), xi).around(self.radius())
+    }
+
+    /// Distance of the surface from the places of the face, m.
+    fn radius(&self) -> f64 {
+        self.face().radius.unwrap_or(0.0)
+    }
+
+    /// On which side of its normal a cell faces the closest point: 1 or -1.
+    fn side(&self, cell: &Cell, closest: &Projection) -> f64 {
+        let way = Vec3::from(closest.point) - Vec3::from(cell.middle());
+        match self.face().is_round() && cell.normal().dot(&way) < 0.0 {
+            true => -1.0,
+            false => 1.0,
+        }
     }
 
     fn push(&mut self, sample: &Sample, stencil: Stencil) {

@@ -218,13 +218,17 @@ impl Contact {
     pub fn thickest(&self) -> f64 {
         let points = self.points.iter().enumerate();
         let beyond = |(k, point): (usize, &Point)| point.radius - self.offset(k);
-        let own = points.map(beyond).fold(0.0, f64::max);
+        points.map(beyond).fold(0.0, f64::max) + self.widest()
+    }
+
+    /// The most that a face of the other side is thick beyond its place, m.
+    pub(super) fn widest(&self) -> f64 {
         let target = match &self.target {
             Target::Surface(faces) => &faces[..],
             Target::Rigid(_) => &[],
         };
         let radii = target.iter().filter_map(|face| face.radius);
-        own + radii.fold(0.0, f64::max)
+        radii.fold(0.0, f64::max)
     }
 
     /// Bounds the motion since the last pairing.
@@ -356,10 +360,6 @@ impl Contact {
             };
             least = least.min(distance - radius);
         }
-        let offset = self
-            .offsets
-            .iter()
-            .fold(0.0_f64, |least, offset| least.min(*offset));
-        0.5 * (least - SQRT_2 * (reach - offset))
+        0.5 * (least - SQRT_2 * (reach + self.thickest()))
     }
 }

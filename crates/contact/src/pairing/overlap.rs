@@ -126,9 +126,16 @@ impl Cell {
     /// Quadrature points on what the shadow of another cell, cast along the normal of this one, covers of it.
     ///
     /// `low`: all shape functions involved are linear, and degree 2 is enough. Otherwise the rules are exact to degree 5
-    /// on segments and triangles: for the products of shape functions on parallelograms.
-    pub fn shared(&self, other: &Cell, low: bool, mut each: impl FnMut(Sample)) {
-        let faces = facing(-self.normal.dot(&other.normal));
+    /// on segments and triangles: for the products of shape functions on parallelograms. `side`: 1 where what faces the other cell is on the side of
+    /// the normal, -1 on the other one. `round`: the other cell has a surface on both sides.
+    pub fn shared(
+        &self,
+        other: &Cell,
+        (side, round, low): (f64, bool, bool),
+        mut each: impl FnMut(Sample),
+    ) {
+        let cosine = -side * self.normal.dot(&other.normal);
+        let faces = facing(if round { cosine.abs() } else { cosine });
         if faces == 0.0 {
             return;
         }
@@ -147,9 +154,10 @@ impl Cell {
             return;
         }
         let own_polygon = Polygon::new(&own[..self.element.nodes]);
-        let common = Polygon::new(&shadow[..other.element.nodes])
-            .reversed()
-            .clipped(&own_polygon);
+        let shadow = Polygon::new(&shadow[..other.element.nodes]);
+        let opposed = self.normal.dot(&other.normal) < 0.0;
+        let shadow = if opposed { shadow.reversed() } else { shadow };
+        let common = shadow.clipped(&own_polygon);
         let least = SLIVER * own_polygon.area();
         common.triangles(|corners, area| {
             if area > least {

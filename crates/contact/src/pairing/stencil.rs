@@ -160,7 +160,7 @@ impl Stencil {
     }
 
     /// Way along the normal from a node of [`Stencil::relative`] to the surface around it, m.
-    fn reach(&self, node: usize) -> f64 {
+    pub fn reach(&self, node: usize) -> f64 {
         match &self.foot {
             _ if node < self.point.carriers().count() => -self.point.radius,
             Foot::Face(foot) => foot.face.radius.unwrap_or(0.0),

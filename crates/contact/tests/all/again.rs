@@ -4,7 +4,7 @@ use carom_contact::{Basis, Integration, Search};
 use carom_testing::Random;
 
 use crate::fixture::paired;
-use crate::mortar::flat_pairs;
+use crate::pairs::flat_pairs;
 
 #[test]
 fn points_paired_again_are_what_a_new_pairing_makes_of_them_and_others_stay() {

@@ -6,7 +6,7 @@ use carom_elements::Kind;
 use carom_mesh::Face;
 
 use crate::fixture::{face, full};
-use crate::mortar::{BASES, Pair};
+use crate::pairs::{BASES, Pair};
 
 /// A sharp edge over a flat surface, `gap` above it: one face looks straight down, the other rises from the edge by `angle`.
 /// In the plane, or with one face along the edge in space.
