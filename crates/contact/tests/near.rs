@@ -280,15 +280,18 @@ fn nodes_on_faces_of_small_sliding() {
 }
 
 #[test]
-fn multipliers_on_faces() {
-    let scene = two_sheets();
-    let (mortar, points) = Mortar::new(scene.of(1), &scene.x, |_| 1.0);
-    let contact = Contact {
-        integration: Integration::Mortar { basis: Basis::Dual },
-        mortar: Some(mortar),
-        ..contact(Target::Surface(scene.of(0)), points)
-    };
-    check(&scene, &contact, scene.sheets[1]);
+fn multipliers_on_faces_and_around_them() {
+    for radius in [None, Some(0.1)] {
+        let mut scene = two_sheets();
+        scene.faces.iter_mut().for_each(|face| face.radius = radius);
+        let (mortar, points) = Mortar::new(scene.of(1), &scene.x, |_| 1.0);
+        let contact = Contact {
+            integration: Integration::Mortar { basis: Basis::Dual },
+            mortar: Some(mortar),
+            ..contact(Target::Surface(scene.of(0)), points)
+        };
+        check(&scene, &contact, scene.sheets[1]);
+    }
 }
 
 #[test]
