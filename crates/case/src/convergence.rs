@@ -5,8 +5,12 @@ use carom_mesh::{Mesh, is_refinable};
 use crate::schema::{Case, LargestStep, MeshStep, Step, StepRule};
 
 /// The command that runs a case with a finer mesh and with half the step; `None` where the case has neither cells that can be
-/// divided nor a step. `overrides`: those that the run had.
-pub(crate) fn study(case: &Case, mesh: &Mesh, overrides: &[String]) -> Option<String> {
+/// divided nor a step. `file`: that of the case; `overrides`: those that the run had.
+pub(crate) fn study(
+    (file, case): (&str, &Case),
+    mesh: &Mesh,
+    overrides: &[String],
+) -> Option<String> {
     let varied: Vec<String> = [finer(case, mesh), shorter(case)]
         .into_iter()
         .flatten()
@@ -24,7 +28,7 @@ pub(crate) fn study(case: &Case, mesh: &Mesh, overrides: &[String]) -> Option<St
         .iter()
         .map(|vary| format!(" --vary {}", quoted(vary)));
     let options: String = varied.chain(kept).collect();
-    Some(format!("carom study case.toml{options}"))
+    Some(format!("carom study {}{options}", quoted(file)))
 }
 
 /// One refinement more.
@@ -58,7 +62,7 @@ fn shorter(case: &Case) -> Option<String> {
 
 /// A word of a shell.
 fn quoted(text: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "=.,-_+".contains(c);
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "=.,-_+/".contains(c);
     match text.chars().all(is_plain) {
         true => text.to_owned(),
         false => format!("'{}'", text.replace('\'', "'\\''")),

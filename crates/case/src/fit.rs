@@ -9,21 +9,12 @@ use std::path::{Path, PathBuf};
 
 use carom_output::Folder;
 use carom_output::compare::{Outcome, StepForce};
-use carom_output::study::{Abscissa, Quantity, Run, Study};
+use carom_output::study::{Abscissa, Fitted, Found, Goal, Quantity, Run, Study};
 
 use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::study::run_name;
 use crate::sweep::{Job, Sweep, SweepError, run_all};
-
-/// What is wanted.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Goal {
-    /// This value of a quantity.
-    Quantity(Quantity, f64),
-    /// The least distance ([`StepForce::distance`]) of the contact force from this history.
-    Force(StepForce),
-}
 
 /// A key to fit.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,17 +25,6 @@ pub struct Fit {
     pub between: [f64; 2],
     /// What it is fitted to.
     pub goal: Goal,
-}
-
-/// What a fit came to.
-#[derive(Clone, Debug)]
-pub struct Fitted {
-    /// All trials, in their order.
-    pub study: Study,
-    /// Path of the page.
-    pub page: PathBuf,
-    /// The value found and what the case gives with it: the quantity, or the distance of the force. `Err`: why none was.
-    pub found: Result<(f64, f64), String>,
 }
 
 /// Most trials.
@@ -195,12 +175,12 @@ fn history(path: &Path, contact: Option<&str>) -> Result<StepForce, SweepError> 
     Ok(history)
 }
 
-/// Looks for the value and writes the trials as a study into the folder of `sweep`.
+/// Looks for the value and writes the trials as a study into the folder of `sweep`; returns it with the path of its page.
 ///
 /// # Errors
 /// The case or a trial is refused before anything is written; a common file cannot be written. A run that fails, and a
-/// goal that does not lie in the range, are told in what is returned.
-pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<Fitted, SweepError> {
+/// goal that does not lie in the range, are told in [`Study::fitted`].
+pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<(Study, PathBuf), SweepError> {
     let base = Job::new("", input, Vec::new())?;
     base.has_contact(sweep.contact)?;
     let [a, b] = fit.between;
@@ -215,10 +195,7 @@ pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<Fitted, SweepError
         keys: vec![(fit.key.clone(), Vec::new())],
         abscissa: Abscissa::Nothing,
         runs: Vec::new(),
-        wanted: match &fit.goal {
-            Goal::Force(history) => Some(history.clone()),
-            Goal::Quantity(..) => None,
-        },
+        fitted: None,
     };
     let logarithmic = a > 0.0 && b / a > DECADES;
     let value = |s: f64| if logarithmic { s.exp() } else { s };
@@ -251,34 +228,39 @@ pub fn fit(input: &Input, fit: &Fit, sweep: &Sweep) -> Result<Fitted, SweepError
         Goal::Quantity(_, goal) => meet(range, *goal, &mut trial)?,
         Goal::Force(_) => nearest(range, &mut trial)?,
     };
+    let (_, values) = &study.keys[0];
+    let found = found.map(|(s, reached)| {
+        let taken = format!("{:?}", value(s));
+        Found {
+            run: values.iter().position(|v| *v == taken).unwrap_or_default(),
+            value: value(s),
+            reached,
+        }
+    });
+    study.fitted = Some(Fitted {
+        key: fit.key.clone(),
+        goal: fit.goal.clone(),
+        found,
+    });
     let page = study.write(&mut folder)?;
-    Ok(Fitted {
-        study,
-        page,
-        found: found.map(|(s, reached)| (value(s), reached)),
-    })
+    Ok((study, page))
 }
 
 /// What a trial gives: the quantity, or the distance from the history.
 fn result(goal: &Goal, run: &Run) -> Result<f64, String> {
-    let Outcome::Done(done) = &run.variant.outcome else {
+    if !matches!(run.variant.outcome, Outcome::Done(_)) {
         let (verdict, reason) = run.variant.verdict();
         return Err(format!(
             "the trial {} was {verdict}: {reason}",
             run.variant.name
         ));
-    };
-    match goal {
-        Goal::Quantity(quantity, _) => quantity
-            .of(run)
-            .map(|measure| measure.value)
-            .ok_or_else(|| format!("the trial {} has no {}", run.variant.name, quantity.name())),
-        Goal::Force(history) => done
-            .history
-            .force
-            .distance(history)
-            .ok_or_else(|| "the wanted history has no force while the case runs".to_owned()),
     }
+    goal.of(run).ok_or_else(|| match goal {
+        Goal::Quantity(quantity, _) => {
+            format!("the trial {} has no {}", run.variant.name, quantity.name())
+        }
+        Goal::Force(_) => "the wanted history has no force while the case runs".to_owned(),
+    })
 }
 
 /// A trial: the outer error ends the program, the inner one the search.

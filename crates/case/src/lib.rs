@@ -42,7 +42,7 @@ pub use convert::{NotConverted, convert};
 pub use error::{Place, Problem};
 pub use estimate::{Estimate, estimate};
 pub use facts::{Fact, facts};
-pub use fit::{Fit, Fitted, Goal, fit};
+pub use fit::{Fit, fit};
 pub use input::{Input, Source};
 pub use locate::Locator;
 pub use mesh_facts::mesh_facts;

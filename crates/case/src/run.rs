@@ -176,12 +176,12 @@ pub(crate) fn settings(
     origin: &Origin,
 ) -> Settings {
     let file = input.sources.first();
-    let file = file.map_or(String::new(), |source| source.text.clone());
+    let (name, file) = file.map_or(("", ""), |source| (&source.name, &source.text));
     let checkpoint = case.output.checkpoint.unwrap_or_default();
     Settings {
         folder,
         title: origin.title.clone(),
-        case_text: comments(&origin.overrides) + &file,
+        case_text: comments(&origin.overrides) + file,
         version: env!("CARGO_PKG_VERSION").to_string(),
         scheme: match &built.zoned {
             None if case.time.is_static() => "static".to_string(),
@@ -193,7 +193,7 @@ pub(crate) fn settings(
                 .collect::<Vec<_>>()
                 .join(", "),
         },
-        study: convergence::study(case, &built.system.mesh, &origin.overrides),
+        study: convergence::study((name, case), &built.system.mesh, &origin.overrides),
         end: built.end,
         probes: built
             .probes

@@ -254,7 +254,7 @@ fn gather(title: String, axes: &[Axis], grid: &[Vec<usize>], ended: Vec<Ended>) 
         keys: keys.collect(),
         runs: ended.into_iter().zip(grid).map(run).collect(),
         abscissa,
-        wanted: None,
+        fitted: None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! `carom study`.
 
-use carom_case::{Axis, Fit, Goal, Input, SweepError};
+use carom_case::{Axis, Fit, Input, SweepError};
 use carom_output::study::RAW_PEAK;
 
 use crate::exit::FAILED;
@@ -89,29 +89,25 @@ fn fit(common: &sweep::Arguments, input: &Input, fit: Result<Fit, SweepError>) -
     };
     let folder = common.folder("study");
     let fitted = common.sweep(&folder, |sweep| carom_case::fit(input, &fit, sweep));
-    let fitted = match fitted {
+    let (study, page) = match fitted {
         Ok(fitted) => fitted,
         Err(error) => return sweep::refuse(&error),
     };
-    out!("{}", line(&fitted.study.title));
-    out!("{}\n", sweep::contact(fitted.study.contact()));
-    out!("{}", fitted.study.table().text(sweep::WIDTH));
-    let what = match &fit.goal {
-        Goal::Quantity(quantity, _) => quantity.name(),
-        Goal::Force(_) => "relative distance of the force",
-    };
-    let variants = || fitted.study.runs.iter().map(|run| &run.variant);
+    out!("{}", line(&study.title));
+    out!("{}\n", sweep::contact(study.contact()));
+    out!("{}", study.table().text(sweep::WIDTH));
+    let variants = || study.runs.iter().map(|run| &run.variant);
     sweep::reasons(variants());
-    let code = match &fitted.found {
-        Ok((value, reached)) => {
-            out!("  {} = {value:.7}: {what} {reached:.7}", fit.key);
-            0
-        }
-        Err(reason) => {
+    let code = match study.fitted.as_ref().map(|fitted| &fitted.found) {
+        Some(Err(reason)) => {
             err!("error: {reason}");
             FAILED
         }
+        _ => {
+            out!("  {}", study.fitted_text().unwrap_or_default());
+            0
+        }
     };
-    out!("  report: {}", fitted.page.display());
+    out!("  report: {}", page.display());
     code.max(sweep::code(variants()))
 }

@@ -414,19 +414,19 @@ fn a_fit_finds_the_parameter_that_made_the_result() {
         let fitted = sweep(&work.path().join("fit"), 1, |sweep| {
             fit(&input, &wanted, sweep)
         });
-        let fitted = fitted.unwrap();
-        let (theta, _) = fitted.found.unwrap();
+        let (study, path) = fitted.unwrap();
+        let found = study.fitted.as_ref().unwrap().found.clone().unwrap();
+        let theta = found.value;
         assert!((theta - truth).abs() < tolerance, "{goal}: {theta}");
-        assert!(fitted.study.runs.len() < 25, "{}", fitted.study.runs.len());
-        assert!(fitted.page.is_file());
+        assert!(study.runs.len() < 25, "{}", study.runs.len());
         // a wanted history is drawn under the force of the nearest trial, and under that one alone
         let figure = fs::read_to_string(work.path().join("fit/plots/force.svg"));
-        let page = fs::read_to_string(&fitted.page).unwrap();
+        let page = fs::read_to_string(&path).unwrap();
         match goal.starts_with("force") {
             true => {
                 let figure = figure.unwrap();
                 assert!(figure.contains("\nwanted\n"), "{figure}");
-                let drawn = fitted.study.runs.iter();
+                let drawn = study.runs.iter();
                 let drawn = drawn.filter(|run| figure.contains(&run.variant.name));
                 assert_eq!(drawn.count(), 1);
                 assert!(page.contains("The pale line is the wanted history"));
@@ -441,11 +441,11 @@ fn a_fit_finds_the_parameter_that_made_the_result() {
         None,
     )
     .unwrap();
-    let fitted = sweep(&work.path().join("fit"), 1, |sweep| {
+    let (study, _) = sweep(&work.path().join("fit"), 1, |sweep| {
         fit(&input, &far, sweep)
     })
     .unwrap();
-    assert!(fitted.found.is_err());
+    assert!(study.fitted.unwrap().found.is_err());
 }
 
 #[test]

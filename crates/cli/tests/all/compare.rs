@@ -277,9 +277,72 @@ fn a_fit_prints_the_value_that_it_found() {
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(said.contains("time.scheme.theta.theta = 0."), "{said}");
     assert!(said.contains("restitution 0.9200000"), "{said}");
+    let found = written(work.path());
+    let value = found["value"].as_f64().unwrap();
+    assert!(said.contains(&format!("theta = {value:.7}")), "{said}");
+    assert!((found["reached"].as_f64().unwrap() - 0.92).abs() < 1e-6);
+    let run = found["run"].as_str().unwrap();
+    let results = work.path().join("case.study").join(run);
+    assert!(results.join("summary.json").is_file());
+    let page = work.path().join("case.study/report.html");
+    let page = fs::read_to_string(page).unwrap();
+    assert_eq!(page.matches("→").count(), 1, "one run is marked");
     let output = fit("restitution=0.1");
     assert_eq!(output.status.code(), Some(3), "{}", text(&output));
+    assert!(written(work.path())["reason"].is_string());
     assert_eq!(fit("rest=0.1").status.code(), Some(2));
+}
+
+/// The `fit.json` of the case in a folder.
+fn written(work: &std::path::Path) -> serde_json::Value {
+    let text = fs::read_to_string(work.join("case.study/fit.json")).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+/// A history is met by the run that made it: its distance is zero, and that of the others is in the table.
+#[test]
+fn a_fit_to_a_history_finds_the_run_that_made_it() {
+    let work = tempfile::tempdir().unwrap();
+    case(work.path());
+    let key = "time.scheme.theta.theta";
+    let one = [
+        "run",
+        "case.toml",
+        "--set",
+        "time.scheme.theta.theta=0.6",
+        "--results",
+        "made",
+    ];
+    assert_eq!(carom(work.path(), &one).status.code(), Some(0));
+    let to = "force=made/histories.csv";
+    let arguments = [
+        "study",
+        "case.toml",
+        "--fit",
+        key,
+        "--between",
+        "0.5,1",
+        "--to",
+        to,
+    ];
+    let output = carom(work.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let found = written(work.path());
+    // a thousandth of the range
+    assert!((found["value"].as_f64().unwrap() - 0.6).abs() < 5e-4);
+    let table = fs::read_to_string(work.path().join("case.study/study.csv")).unwrap();
+    let mut lines = table
+        .lines()
+        .map(|line| line.split(',').collect::<Vec<_>>());
+    let heads = lines.next().unwrap();
+    let column = |name: &str| heads.iter().position(|head| *head == name).unwrap();
+    let (run, distance) = (column("run"), column("distance"));
+    let rows: Vec<(String, f64)> = lines
+        .map(|row| (row[run].to_owned(), row[distance].parse().unwrap()))
+        .collect();
+    let nearest = rows.iter().min_by(|a, b| a.1.total_cmp(&b.1)).unwrap();
+    assert_eq!(nearest.0, found["run"].as_str().unwrap());
+    assert_eq!(nearest.1, found["reached"].as_f64().unwrap());
 }
 
 /// Starts a sweep, interrupts it while the run in the folder `running` goes on, and gives the table that it left.

@@ -16,14 +16,14 @@ impl Study {
     /// The figure as SVG; `None` where there is no contact, more runs than can be told apart, or a curve that cannot be drawn.
     pub(crate) fn force_figure(&self) -> Option<String> {
         let done = |run: &Run| Some((run.variant.name.clone(), drawn(run.variant.done()?)?));
-        let curves: Vec<(String, Polyline)> = match &self.wanted {
+        let curves: Vec<(String, Polyline)> = match self.wanted() {
             Some(wanted) => vec![done(self.nearest(wanted)?)?],
             None => self.runs.iter().filter_map(done).collect(),
         };
         if curves.is_empty() || curves.len() > MOST {
             return None;
         }
-        let wanted = self.wanted.as_ref().map(StepForce::curve);
+        let wanted = self.wanted().map(StepForce::curve);
         let wanted = wanted.iter().map(|(x, y)| Curve {
             name: "wanted",
             x,
@@ -65,7 +65,7 @@ impl Study {
             let line = line(name, "computed", zipped(&drawn(done)?));
             Some((line, done.is_bad()))
         });
-        let wanted = self.wanted.as_ref().map(StepForce::curve);
+        let wanted = self.wanted().map(StepForce::curve);
         let wanted = wanted
             .iter()
             .map(|curve| line("wanted", "exact", zipped(curve)));

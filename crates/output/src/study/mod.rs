@@ -4,15 +4,15 @@
 //! order comes from the differences of neighbouring runs, which needs values in a constant ratio.
 
 mod envelope;
+mod fitted;
 mod forces;
 mod orders;
 mod page;
 mod quantities;
 mod run;
 
-use crate::compare::StepForce;
-
 pub use envelope::{Envelope, Governed};
+pub use fitted::{Fitted, Found, Goal};
 pub use orders::{Fit, consecutive, differences, extrapolate, fit, saturation};
 pub use page::RAW_PEAK;
 pub use quantities::{Measure, Quantity};
@@ -29,8 +29,8 @@ pub struct Study {
     pub abscissa: Abscissa,
     /// The runs.
     pub runs: Vec<Run>,
-    /// The force history that a fit comes nearest to; the figure of forces shows it under that of the nearest run.
-    pub wanted: Option<StepForce>,
+    /// What a fit looked for and found; the figure of forces shows a history that it came nearest to under that of the nearest run.
+    pub fitted: Option<Fitted>,
 }
 
 /// What the orders are taken against.

@@ -25,7 +25,9 @@ impl Study {
         let quantities = self.shown();
         let names = quantities.iter().map(|quantity| quantity.name().to_owned());
         let heads = [String::new()].into_iter().chain(keys);
+        let wanted = self.wanted();
         let heads = heads.chain(["step".to_owned()]).chain(names);
+        let heads = heads.chain(wanted.map(|_| "distance".to_owned()));
         let row = |(k, run): (usize, &Run)| {
             let keys = self.keys.iter().map(|(_, values)| values[k].clone());
             let step = run.variant.done().map(|d| d.summary.time.largest_step);
@@ -36,6 +38,12 @@ impl Study {
             });
             let name = [run.variant.name.clone()].into_iter();
             let cells = name.chain(keys).chain([step]).chain(cells);
+            let distance = wanted.map(|wanted| {
+                let done = run.variant.done();
+                let distance = done.and_then(|done| done.history.force.distance(wanted));
+                distance.map_or(NOTHING.to_owned(), |distance| quantity(distance, ""))
+            });
+            let cells = cells.chain(distance);
             cells.chain([run.variant.verdict().0.to_owned()]).collect()
         };
         Table {
@@ -119,13 +127,14 @@ impl Study {
         }
     }
 
-    /// Writes `study.csv`, `orders.csv`, `plots/orders.svg` (if there is an order and one axis), `plots/force.svg` (if the
+    /// Writes `study.csv`, `fit.json` (of a fit), `orders.csv`, `plots/orders.svg` (if there is an order and one axis), `plots/force.svg` (if the
     /// runs have a contact and can be told apart) and `report.html` into the folder; returns the path of the page.
     ///
     /// # Errors
     /// The first file that could not be written.
     pub fn write(&self, folder: &mut Folder) -> Result<PathBuf, Error> {
         self.write_runs(folder)?;
+        self.write_fitted(folder)?;
         let orders = self.orders();
         self.write_orders(folder, &orders)?;
         self.write_envelope(folder)?;
@@ -176,6 +185,7 @@ impl Study {
             names.push(quantity.column().to_owned());
             names.push(format!("exact.{}", quantity.column()));
         }
+        names.extend(self.wanted().map(|_| "distance".to_owned()));
         names.extend(["wall_s", "verdict", "reason"].map(str::to_owned));
         let verdicts: Vec<_> = self.runs.iter().map(|run| run.variant.verdict()).collect();
         let row = |k: usize| {
@@ -190,6 +200,9 @@ impl Study {
                 let measure = quantity.of(run);
                 cells.push(measure.map(|m| m.value).into());
                 cells.push(measure.and_then(|m| m.exact).into());
+            }
+            if let Some(wanted) = self.wanted() {
+                cells.push(done.and_then(|d| d.history.force.distance(wanted)).into());
             }
             let wall = done.and_then(|d| d.summary.timings.get("total").copied());
             let (verdict, reason) = &verdicts[k];
@@ -254,18 +267,22 @@ impl Study {
         let mut environment = environment()?;
         environment.add_template("study.html", include_str!("../../templates/study.html"))?;
         let (table, orders) = (self.table(), self.order_table());
-        let run = |(run, cells): (&Run, &Vec<String>)| {
+        let fitted = self.fitted.as_ref();
+        let nearest = fitted.and_then(|fitted| Some(fitted.found.as_ref().ok()?.run));
+        let run = |(k, (run, cells)): (usize, (&Run, &Vec<String>))| {
             let (verdict, reason) = run.variant.verdict();
             context! {
                 name => run.variant.name.clone(),
                 page => run.variant.done().is_some(),
+                nearest => nearest == Some(k),
                 cells => inner(cells),
                 verdict,
                 reason,
             }
         };
         let envelope = self.envelope_table();
-        let runs: Vec<Value> = self.runs.iter().zip(&table.rows).map(run).collect();
+        let runs = self.runs.iter().zip(&table.rows).enumerate();
+        let runs: Vec<Value> = runs.map(run).collect();
         let [head, block] = self.plots().texts()?;
         let page = environment.get_template("study.html")?.render(context! {
             title => self.title.clone(),
@@ -283,7 +300,9 @@ impl Study {
             version => env!("CARGO_PKG_VERSION"),
             figure => figure.map(Value::from_safe_string),
             forces => forces.map(Value::from_safe_string),
-            wanted => self.wanted.is_some(),
+            wanted => self.wanted().is_some(),
+            fitted => self.fitted_text(),
+            unfitted => fitted.and_then(|fitted| fitted.found.as_ref().err().cloned()),
             absent => self.absent().iter().map(Absent::text).collect::<Vec<_>>(),
             head => Value::from_safe_string(head),
             block => Value::from_safe_string(block),
