@@ -16,6 +16,20 @@ impl Mesh {
     ///
     /// A node on the common face of two cells is in neither. In the reference position. Cells must fill the space of the mesh and have positive Jacobians ([`Mesh::check`]).
     pub fn nodes_inside(&self, nodes: &[u32], cells: &[ElementId]) -> Vec<(u32, ElementId)> {
+        self.nodes_deeper(nodes, cells, DEPTH)
+    }
+
+    /// The same of nodes that lie inside a cell or on its border.
+    pub fn nodes_within(&self, nodes: &[u32], cells: &[ElementId]) -> Vec<(u32, ElementId)> {
+        self.nodes_deeper(nodes, cells, -DEPTH)
+    }
+
+    fn nodes_deeper(
+        &self,
+        nodes: &[u32],
+        cells: &[ElementId],
+        depth: f64,
+    ) -> Vec<(u32, ElementId)> {
         let place = |node: &u32| self.nodes[*node as usize];
         let bounds = |cell: &ElementId| {
             let x: Vec<[f64; 3]> = self.element_nodes(*cell).iter().map(place).collect();
@@ -32,15 +46,16 @@ impl Mesh {
             let x = self.nodes[node as usize];
             tree.near(&x, 0.0, &mut near);
             let mut others = near.iter().map(|&place| cells[place as usize]);
-            let found = others
-                .find(|&cell| !self.element_nodes(cell).contains(&node) && self.holds(cell, &x));
+            let found = others.find(|&cell| {
+                !self.element_nodes(cell).contains(&node) && self.holds(cell, &x, depth)
+            });
             inside.extend(found.map(|cell| (node, cell)));
         }
         inside
     }
 
-    /// Whether a place lies inside a cell, by more than [`DEPTH`].
-    fn holds(&self, cell: ElementId, place: &[f64; 3]) -> bool {
+    /// Whether a place lies inside a cell, by more than `depth` in reference units.
+    fn holds(&self, cell: ElementId, place: &[f64; 3], depth: f64) -> bool {
         let table = self.kind(cell).table();
         let mut buffer = [[0.0; 3]; MAX_NODES];
         let x = gather(&self.nodes, self.element_nodes(cell), &mut buffer);
@@ -67,7 +82,7 @@ impl Mesh {
                 break;
             }
         }
-        (table.contains)(&xi, -DEPTH)
+        (table.contains)(&xi, -depth)
     }
 }
 

@@ -181,6 +181,7 @@ impl Builder<'_> {
             return None;
         }
         self.pieces(&mesh, &bodies);
+        self.unglued(&mesh, &bodies);
         let mut joints = self.joints_of(&mesh, &mut bodies, &supports);
         if !self.plan.zones.is_empty() {
             joints.links.append(&mut links);

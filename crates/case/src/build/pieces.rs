@@ -1,11 +1,12 @@
-//! Bodies whose cells share no node: a mesh that was not merged, most of the time.
+//! Bodies that look joined and are not: pieces that share no node, and thin bodies that end in a solid.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use carom_dynamics::ModelBody;
 use carom_mesh::{Mesh, Parts};
 
 use super::Builder;
+use super::arlequin::is_thin;
 
 impl Builder<'_> {
     /// Warns of bodies in pieces that nothing joins, not even another body, and names the closest nodes of two of them.
@@ -37,6 +38,59 @@ impl Builder<'_> {
             ));
         }
     }
+}
+
+impl Builder<'_> {
+    /// Warns of beams and shells that lie in a solid to which nothing joins them: no overlap, no transition, no common node.
+    pub(super) fn unglued(&mut self, mesh: &Mesh, bodies: &[ModelBody]) {
+        let nodes = |body: &ModelBody| {
+            let cells = body.spec.cells.iter();
+            let nodes = cells.flat_map(|&cell| mesh.element_nodes(cell)).copied();
+            nodes.collect::<BTreeSet<u32>>()
+        };
+        let ends = self.case.transition.iter();
+        let ends = ends.filter_map(|(_, given)| mesh.groups.get(given.end.as_ref()?));
+        let ends: Vec<u32> = ends.flat_map(|group| mesh.group_nodes(group)).collect();
+        for thin in bodies.iter().filter(|body| is_thin(body)) {
+            let own = nodes(thin);
+            if ends.iter().any(|end| own.contains(end)) {
+                continue;
+            }
+            for solid in bodies.iter().filter(|body| fills(mesh, body)) {
+                let names = [&thin.spec.name, &solid.spec.name];
+                let mut glued = self.case.arlequin.iter();
+                let glued = glued.any(|(_, given)| {
+                    names
+                        .iter()
+                        .all(|name| **name == given.inner || **name == given.outer)
+                });
+                if glued || !own.is_disjoint(&nodes(solid)) {
+                    continue;
+                }
+                let all: Vec<u32> = own.iter().copied().collect();
+                let within = mesh.nodes_within(&all, &solid.spec.cells);
+                let Some((first, _)) = within.first().filter(|_| within.len() > 1) else {
+                    continue;
+                };
+                let x = mesh.nodes[*first as usize];
+                self.warnings.push(format!(
+                    "{} nodes of body `{}`, the first at ({:.6}, {:.6}, {:.6}) m, lie in the solid `{}`, and nothing joins the two: [arlequin.<name>] glues them over a volume, [transition.<name>] an end to a face",
+                    within.len(),
+                    names[0],
+                    x[0],
+                    x[1],
+                    x[2],
+                    names[1],
+                ));
+            }
+        }
+    }
+}
+
+/// Whether the cells of a body fill the space of the mesh.
+fn fills(mesh: &Mesh, body: &ModelBody) -> bool {
+    let cell = body.spec.cells.first();
+    !is_thin(body) && cell.is_some_and(|&cell| mesh.kind(cell).table().dim == mesh.dim)
 }
 
 /// Nodes of a body by the part that they are in, ascending.

@@ -21,9 +21,9 @@ pub struct Body {
     pub region: String,
     /// Name of a material of this file.
     pub material: String,
-    /// Section of bars, beams or plane cells: required for all of these, refused for solids.
+    /// Section of bars, beams, shells or plane cells: required for all of these, refused for solids.
     pub section: Option<Section>,
-    /// Mass matrix. Default: lumped; of beams consistent, where the scheme takes it.
+    /// Mass matrix. Default: lumped; of beams and shells consistent, where the scheme takes it.
     pub mass: Option<Mass>,
     /// Integration of the internal work of its cells.
     #[serde(default)]
@@ -300,7 +300,7 @@ pub struct Initial {
 pub struct Support {
     /// Group whose nodes are held: a side, or the cells of a body.
     pub on: String,
-    /// Directions in which the nodes are held; `rx`, `ry`, `rz` are rotations: of nodes of beams about x, y, z, of rigid bodies
+    /// Directions in which the nodes are held; `rx`, `ry`, `rz` are rotations: of nodes of beams and shells about x, y, z, of rigid bodies
     /// about the principal axes of inertia nearest to x, y, z.
     #[serde(default)]
     #[schemars(extend("minItems" = 1, "uniqueItems" = true))]
@@ -322,11 +322,11 @@ pub struct Movement {
     pub y: Option<MovementCourse>,
     /// Displacement along the third axis. Default: free.
     pub z: Option<MovementCourse>,
-    /// Rotation of a rigid body about its first axis, of nodes of beams about x. Default: free.
+    /// Rotation of a rigid body about its first axis, of nodes of beams and shells about x. Default: free.
     pub rx: Option<Vec<TurnPoint>>,
-    /// Rotation of a rigid body about its second axis, of nodes of beams about y. Default: free.
+    /// Rotation of a rigid body about its second axis, of nodes of beams and shells about y. Default: free.
     pub ry: Option<Vec<TurnPoint>>,
-    /// Rotation of a rigid body about its third axis, of nodes of beams about z; the only one in the plane. Default: free.
+    /// Rotation of a rigid body about its third axis, of nodes of beams and shells about z; the only one in the plane. Default: free.
     pub rz: Option<Vec<TurnPoint>>,
 }
 

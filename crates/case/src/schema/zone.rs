@@ -8,7 +8,7 @@ use carom_quantities::{Coordinate, Length, Vector};
 use carom_schemes::Scheme;
 
 /// A zone: bodies with their own scheme and step. If a case has zones, every body is in one of them. The two sides of a
-/// contact are in the same zone.
+/// contact may be in different ones: with equal steps under every law, with unequal steps under the velocity law without friction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Zone {
@@ -62,7 +62,7 @@ pub struct StepCount(pub u32);
 
 /// An overlap of two bodies, which represent the same material there and are glued in volume (Arlequin method). The two
 /// bodies have their own meshes and are in different zones. Contact surfaces lie outside of the overlap. One of the two may be a body of beams
-/// and the other a solid or plane body that continues it.
+/// and the other a solid or plane body that continues it, or a shell and the other a solid that continues it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Arlequin {
@@ -72,7 +72,7 @@ pub struct Arlequin {
     /// the overlap are removed.
     pub outer: String,
     /// Region in which the two are glued, at least one cell of the outer body thick, better two to four. Of a beam and a solid it is a length of
-    /// the axis of the beam.
+    /// the axis of the beam, of a shell and a solid a band of the middle surface.
     #[serde(default)]
     pub overlap: OverlapRegion,
     /// Distribution of inertia and internal work between the two bodies. Default `"linear"`: the only profile that

@@ -277,3 +277,48 @@ time = {{ end = 2.0, step = 0.1, scheme.theta = {{}} }}
     // a force between nodes, whatever their areas
     assert!(told([3.0, 2.0], "velocity = {}").is_empty());
 }
+
+/// A beam along the common edge of the cells of a solid, from inside of it, with what joins them.
+fn beam_in_a_solid(joint: &str, from: f64) -> Vec<String> {
+    let text = format!(
+        r#"
+carom = 1
+mesh.generate.tip.box = {{ origin = [0.0, -0.01, -0.01], size = [0.1, 0.02, 0.02], elements = [10, 2, 2] }}
+mesh.generate.bar.line = {{ from = [{from:?}, 0.0, 0.0], to = [0.5, 0.0, 0.0], elements = 44 }}
+material.m = {{ density = 1000.0, elastic = {{ young = 1e8, poisson = 0.3 }} }}
+body.tip = {{ region = "tip", material = "m" }}
+body.bar = {{ region = "bar", material = "m", section.beam = {{ shape.rectangle = {{ height = 0.02, width = 0.02 }}, orientation = [0.0, 1.0, 0.0] }} }}
+time = {{ end = 0.1, step = 1e-4, scheme.theta = {{}} }}
+{joint}
+"#
+    );
+    let input = Input::from_text("case.toml", &text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    build(&case, &locator, &input).unwrap().warnings
+}
+
+#[test]
+fn a_beam_in_a_solid_to_which_nothing_joins_it_is_told() {
+    let told = beam_in_a_solid("", 0.06);
+    let told: Vec<_> = told
+        .iter()
+        .filter(|told| told.contains("arlequin"))
+        .collect();
+    let [warning] = &told[..] else {
+        panic!("{told:?}");
+    };
+    // 0.06, 0.07, ... 0.1 m, with the one on the face
+    assert!(
+        warning.starts_with("5 nodes of body `bar`, the first at (0.060000,"),
+        "{warning}"
+    );
+    assert!(warning.contains("the solid `tip`"), "{warning}");
+    let zones = "zone.a.bodies = [\"tip\"]\nzone.b.bodies = [\"bar\"]";
+    let glued = format!("{zones}\narlequin.glue = {{ inner = \"tip\", outer = \"bar\" }}");
+    let ended = "transition.joint = { end = \"bar.left\", face = \"tip.right\" }";
+    for (joint, from) in [(&glued[..], 0.06), (ended, 0.1), ("", 0.11)] {
+        let told = beam_in_a_solid(joint, from);
+        let joins = told.iter().any(|told| told.contains("nothing joins"));
+        assert!(!joins, "{joint}: {told:?}");
+    }
+}

@@ -2,9 +2,9 @@
 
 use serde_json::json;
 
-use super::{Quantity, Run, Study};
+use super::quantities::Quantity;
+use super::run::Run;
 use crate::compare::StepForce;
-use crate::{Error, Folder, atomic};
 
 /// What is wanted.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,43 +63,34 @@ impl Goal {
     }
 }
 
-impl Study {
-    /// The history that a fit comes nearest to.
-    pub(crate) fn wanted(&self) -> Option<&StepForce> {
-        self.fitted.as_ref()?.goal.history()
-    }
-
-    /// What a fit found, in a line for people; `None` of other studies, and where it found nothing.
-    pub fn fitted_text(&self) -> Option<String> {
-        let fitted = self.fitted.as_ref()?;
-        let found = fitted.found.as_ref().ok()?;
-        let (key, name) = (&fitted.key, fitted.goal.name());
-        let run = &self.runs.get(found.run)?.variant.name;
+impl Fitted {
+    /// What was found among these runs, in a line for people; `None` where nothing was.
+    pub(super) fn text(&self, runs: &[Run]) -> Option<String> {
+        let found = self.found.as_ref().ok()?;
+        let (key, name) = (&self.key, self.goal.name());
+        let run = &runs.get(found.run)?.variant.name;
         Some(format!(
             "{key} = {:.7}: {name} {:.7}, run {run}",
             found.value, found.reached
         ))
     }
 
-    /// Writes `fit.json`: key, goal, value, what it gives, and the run; or why no value was found.
-    pub(crate) fn write_fitted(&self, folder: &mut Folder) -> Result<(), Error> {
-        let Some(fitted) = &self.fitted else {
-            return Ok(());
-        };
-        let goal = match &fitted.goal {
+    /// `fit.json`: key, goal, value, what it gives, and the run; or why no value was found.
+    pub(super) fn json(&self, runs: &[Run]) -> String {
+        let goal = match &self.goal {
             Goal::Quantity(quantity, value) => json!({ quantity.column(): value }),
             Goal::Force(_) => json!("force"),
         };
-        let text = match &fitted.found {
+        let text = match &self.found {
             Ok(found) => json!({
-                "key": fitted.key,
+                "key": self.key,
                 "goal": goal,
                 "value": found.value,
                 "reached": found.reached,
-                "run": self.runs.get(found.run).map(|run| run.variant.name.clone()),
+                "run": runs.get(found.run).map(|run| run.variant.name.clone()),
             }),
-            Err(reason) => json!({ "key": fitted.key, "goal": goal, "reason": reason }),
+            Err(reason) => json!({ "key": self.key, "goal": goal, "reason": reason }),
         };
-        atomic::write_text(&folder.file("fit.json")?, &format!("{text:#}\n"))
+        format!("{text:#}\n")
     }
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use minijinja::{Value, context};
 
-use crate::compare::Done;
 use crate::compare::page::inner;
+use crate::compare::{Done, StepForce};
 use crate::form::NOTHING;
 use crate::page::{PROGRAM, STYLE};
 use crate::plot::{Logarithmic, Series, quantity, rounded};
@@ -19,6 +19,16 @@ use crate::{Absent, Error, Folder, atomic};
 pub const RAW_PEAK: &str = "the raw peak of a single step does not converge where the force jumps; use the peak of the mean";
 
 impl Study {
+    /// The history that a fit comes nearest to.
+    pub(crate) fn wanted(&self) -> Option<&StepForce> {
+        self.fitted.as_ref()?.goal.history()
+    }
+
+    /// What a fit found, in a line for people; `None` of other studies, and where it found nothing.
+    pub fn fitted_text(&self) -> Option<String> {
+        self.fitted.as_ref()?.text(&self.runs)
+    }
+
     /// The runs for people: values of the keys, step, quantities.
     pub fn table(&self) -> Table {
         let keys = self.keys.iter().map(|(key, _)| self.head(key).to_owned());
@@ -134,7 +144,10 @@ impl Study {
     /// The first file that could not be written.
     pub fn write(&self, folder: &mut Folder) -> Result<PathBuf, Error> {
         self.write_runs(folder)?;
-        self.write_fitted(folder)?;
+        if let Some(fitted) = &self.fitted {
+            let text = fitted.json(&self.runs);
+            atomic::write_text(&folder.file("fit.json")?, &text)?;
+        }
         let orders = self.orders();
         self.write_orders(folder, &orders)?;
         self.write_envelope(folder)?;
