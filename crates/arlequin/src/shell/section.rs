@@ -24,6 +24,7 @@ pub(super) fn check(
 ) -> Result<(), Error> {
     let mut scratch = Vec::new();
     let mut locate = |x: &[f64; 3]| solid.locate(x, &mut scratch);
+    let (mut first_found, mut unfit) = (None, Vec::new());
     for (element, shell) in models.shell.iter().enumerate() {
         let prism = prisms.cell(element);
         for [r, s] in places(shell.x.len()) {
@@ -42,14 +43,21 @@ pub(super) fn check(
                 continue;
             }
             let half = 0.5 * shell.thickness;
-            return Err(Error::Thickness {
-                found: extent(&mut |height| at(height).is_some()).map(|height| half * height),
-                expected: half,
-                cells: vec![shell.cell],
-            });
+            let mut measured =
+                || extent(&mut |height| at(height).is_some()).map(|height| half * height);
+            first_found.get_or_insert_with(|| (measured(), half));
+            unfit.push(shell.cell);
+            break;
         }
     }
-    Ok(())
+    match first_found {
+        None => Ok(()),
+        Some((found, expected)) => Err(Error::Thickness {
+            found,
+            expected,
+            cells: unfit,
+        }),
+    }
 }
 
 /// Places in the parent cell of an element of three or four nodes.
