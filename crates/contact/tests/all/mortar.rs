@@ -5,7 +5,7 @@ use carom_elements::Kind;
 use carom_testing::{Random, allocations};
 
 use crate::fixture::{assert_balanced, assert_derivatives, full, matrix, paired};
-use crate::pairs::{BASES, KINDS, bent, flat_pairs, grids, lines};
+use crate::pairs::{BASES, KINDS, bent, flat_pairs, grids, lines, over_one_face};
 
 #[test]
 fn a_uniform_pressure_gives_the_consistent_forces_of_both_sides() {
@@ -181,19 +181,9 @@ fn forces_of_every_multiplier_balance_on_bent_surfaces() {
 
 #[test]
 fn rows_and_curvature_of_multipliers_are_derivatives_where_pieces_keep() {
-    // each secondary face sees one primary face: its piece is itself wherever it moves
     let mut random = Random(9);
     for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4, Kind::Quad9] {
-        let pair = match kind {
-            Kind::Bar2 | Kind::Bar3 => lines(&[0.0, 0.4, 1.0], &[-1.0, 2.0], 0.3, kind),
-            kind => {
-                let wide = [[-2.0, 1.5], [-0.5, 3.0]];
-                let mut pair = grids([Kind::Tri3, kind], [[1, 1], [1, 1]], wide, 0.3);
-                pair.secondary.truncate(1);
-                pair.primary.truncate(1);
-                pair
-            }
-        };
+        let pair = over_one_face(kind, 0.3);
         let pair = bent(pair, &mut random, 0.05);
         let u = vec![0.01; pair.dim * pair.x.len()];
         for basis in BASES {

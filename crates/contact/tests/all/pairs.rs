@@ -163,6 +163,18 @@ pub fn grids(kinds: [Kind; 2], cells: [[u32; 2]; 2], primary: [[f64; 2]; 2], gap
     }
 }
 
+/// Secondary faces that see one primary face of a kind each: their pieces are themselves wherever they move.
+pub fn over_one_face(kind: Kind, gap: f64) -> Pair {
+    if kind == Kind::Bar2 {
+        return lines(&[0.0, 0.4, 1.0], &[-1.0, 2.0], gap, kind);
+    }
+    let wide = [[-2.0, 1.5], [-0.5, 3.0]];
+    let mut pair = grids([Kind::Tri3, kind], [[1, 1], [1, 1]], wide, gap);
+    pair.secondary.truncate(1);
+    pair.primary.truncate(1);
+    pair
+}
+
 pub const KINDS: [[Kind; 2]; 7] = [
     [Kind::Tri3, Kind::Tri3],
     [Kind::Quad4, Kind::Quad4],

@@ -7,7 +7,7 @@ use carom_mesh::Face;
 use carom_testing::Random;
 
 use crate::fixture::{assert_balanced, assert_derivatives, face, paired};
-use crate::pairs::{BASES, Pair, bent, flat_pairs, grids, lines};
+use crate::pairs::{BASES, Pair, bent, flat_pairs, grids, over_one_face};
 
 /// Radii around the faces of the secondary side and of the primary one, m.
 const RADII: [f64; 2] = [0.03, 0.02];
@@ -174,20 +174,11 @@ fn forces_of_every_multiplier_balance_between_bent_shells() {
 
 #[test]
 fn rows_and_curvature_between_shells_are_derivatives_where_pieces_keep() {
-    // each secondary face sees one primary face: its piece is itself wherever it moves; bent middles do not pass each other
     let mut random = Random(14);
     for kind in [Kind::Bar2, Kind::Tri3, Kind::Quad4, Kind::Quad9] {
         for sides in ROUND.into_iter().filter(|sides| can_be(kind, sides[1])) {
-            let pair = match kind {
-                Kind::Bar2 => lines(&[0.0, 0.4, 1.0], &[-0.5, 1.5], 0.5, kind),
-                kind => {
-                    let wide = [[-2.0, 1.5], [-0.5, 3.0]];
-                    let mut pair = grids([Kind::Tri3, kind], [[1, 1], [1, 1]], wide, 0.9);
-                    pair.secondary.truncate(1);
-                    pair.primary.truncate(1);
-                    pair
-                }
-            };
+            // bent middles do not pass each other
+            let pair = over_one_face(kind, 1.1);
             let pair = round(bent(pair, &mut random, 0.05), sides, &mut random);
             let u = vec![0.01; pair.dim * pair.x.len()];
             for basis in BASES {
