@@ -39,7 +39,7 @@ pub fn check(arguments: &Arguments) -> u8 {
     let loaded = load_with(case, &arguments.set, |problems| {
         keep_offenders(case, problems)
     });
-    let (input, parsed, built) = match loaded {
+    let (input, parsed, mut built) = match loaded {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
@@ -50,7 +50,7 @@ pub fn check(arguments: &Arguments) -> u8 {
         return code;
     }
     if arguments.estimate {
-        match carom_case::estimate((&input, &parsed, &built), PATIENCE) {
+        match carom_case::estimate((&input, &parsed, &mut built), PATIENCE) {
             Ok(estimate) => facts.push(told(&estimate)),
             Err(error) => {
                 err!("error: {error}");
