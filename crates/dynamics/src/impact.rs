@@ -75,7 +75,8 @@ pub struct Impact {
     pub restitution: Option<f64>,
     /// Why there is no restitution; `None` where there is one.
     pub no_restitution: Option<NoRestitution>,
-    /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J.
+    /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J; zero if they
+    /// did not approach.
     pub energy_given: f64,
     /// Most energy that the contact has taken up at one time, J: the largest value of minus the work of its forces so far. A stop
     /// stores it, or loses a part of it; an exact law takes what it loses.
@@ -259,7 +260,7 @@ impl OpenImpact {
             restitution: restitution.ok(),
             no_restitution: restitution.err(),
             energy_given: match inverse > 0.0 {
-                true => 0.5 * approach * approach / inverse,
+                true => 0.5 * approach.max(0.0).powi(2) / inverse,
                 false => 0.0,
             },
             energy_taken: self.taken,
