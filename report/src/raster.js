@@ -63,8 +63,10 @@ export function showRaster(page, read, shared) {
   });
   const legend = document.createElement("p");
   legend.className = "faint";
+  const slips = Array.prototype.some.call(cells, (cell) => cell & SLIPPING);
   legend.innerHTML =
-    '<span class="swatch" style="background: var(--first)"></span> closed <span class="swatch" style="background: var(--second)"></span> closed and slipping ';
+    '<span class="swatch" style="background: var(--first)"></span> closed ' +
+    (slips ? '<span class="swatch" style="background: var(--second)"></span> closed and slipping ' : "");
   legend.append(`– ${raster.note}`);
   figure.append(legend);
 

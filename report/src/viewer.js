@@ -149,7 +149,8 @@ class Viewer {
     const place = document.createElement("span");
     place.id = "model-peak";
     const at = peak.place.slice(0, this.model.dimension).map((x) => quantity(x, "m"));
-    place.textContent = `◯ ${peak.word} at this instant: ${quantity(peak.value, look.unit)} at (${at.join(", ")})`;
+    const through = this.model.dimension === 3 && this.model.triangles.count > 0 ? "; marked through what is before it" : "";
+    place.textContent = `◯ ${peak.word} at this instant: ${quantity(peak.value, look.unit)} at (${at.join(", ")})${through}`;
     legend.append(place);
   }
 

@@ -75,7 +75,8 @@ pub struct Impact {
     pub restitution: Option<f64>,
     /// Why there is no restitution; `None` where there is one.
     pub no_restitution: Option<NoRestitution>,
-    /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J.
+    /// Kinetic energy of the approach, ½ m w² with the reduced mass m of what no support holds of the two bodies, J; zero if they
+    /// did not approach.
     pub energy_given: f64,
     /// Most energy that the contact has taken up at one time, J: the largest value of minus the work of its forces so far. A stop
     /// stores it, or loses a part of it; an exact law takes what it loses.
@@ -259,7 +260,7 @@ impl OpenImpact {
             restitution: restitution.ok(),
             no_restitution: restitution.err(),
             energy_given: match inverse > 0.0 {
-                true => 0.5 * approach * approach / inverse,
+                true => 0.5 * approach.max(0.0).powi(2) / inverse,
                 false => 0.0,
             },
             energy_taken: self.taken,
@@ -315,9 +316,12 @@ impl Along {
 }
 
 /// The masses of the two sides of a contact by direction, whole and without what supports hold, kg.
+///
+/// A side is its body with all that share nodes with it, directly or through others: they move as one. Two sides that are so
+/// joined have one body each.
 struct Sides<'a> {
     system: &'a System,
-    bodies: [Option<usize>; 2],
+    bodies: [Vec<usize>; 2],
     whole: [f64; 2],
     free: [[f64; 3]; 2],
 }
@@ -325,26 +329,41 @@ struct Sides<'a> {
 impl Sides<'_> {
     fn of(system: &System, contact: usize) -> Sides<'_> {
         let (secondary, primary) = system.sides[contact];
-        // of several bodies on a side no mass and no motion stands for all
-        let bodies = match system.is_of_many(contact) {
-            true => [None; 2],
-            false => [Some(secondary), primary],
+        let part = |body: usize| system.part_of_body[body];
+        let joined = |body: usize| -> Vec<usize> {
+            let all = 0..system.bodies.len();
+            all.filter(|&other| part(other) == part(body)).collect()
+        };
+        let bodies = match (primary, system.is_of_many(contact)) {
+            // no mass and no motion stands for all of them
+            (_, true) => [Vec::new(), Vec::new()],
+            (None, false) => [joined(secondary), Vec::new()],
+            (Some(primary), false) if part(primary) == part(secondary) => {
+                [vec![secondary], vec![primary]]
+            }
+            (Some(primary), false) => [joined(secondary), joined(primary)],
         };
         let mut free = [[0.0; 3]; 2];
-        for (body, free) in bodies.iter().zip(&mut free) {
-            let reduced = body.filter(|&body| system.bodies[body].as_reduced().is_some());
-            match reduced {
-                Some(body) if system.bodies[body].balances_itself() => {
-                    free.fill(system.body_mass(body));
+        for (bodies, free) in bodies.iter().zip(&mut free) {
+            for &body in bodies {
+                match system.bodies[body].as_reduced() {
+                    Some(_) if system.bodies[body].balances_itself() => {
+                        free.iter_mut().for_each(|m| *m += system.body_mass(body));
+                    }
+                    Some(_) => {}
+                    None => each_free(system, body, |_, i, m| free[i] += m),
                 }
-                Some(_) => {}
-                None => each_free(system, *body, |_, i, m| free[i] += m),
             }
         }
+        let mass = |bodies: &Vec<usize>| match bodies.is_empty() {
+            true => f64::INFINITY,
+            false => bodies.iter().map(|&body| system.body_mass(body)).sum(),
+        };
+        let whole = bodies.each_ref().map(mass);
         Sides {
             system,
             bodies,
-            whole: bodies.map(|body| body.map_or(f64::INFINITY, |body| system.body_mass(body))),
+            whole,
             free,
         }
     }
@@ -353,9 +372,11 @@ impl Sides<'_> {
     fn velocities(&self, v: &[f64]) -> [[f64; 3]; 2] {
         let mut means = [[0.0; 3]; 2];
         for (side, mean) in means.iter_mut().enumerate() {
-            each_free(self.system, self.bodies[side], |unknown, i, m| {
-                mean[i] += m / self.free[side][i] * v[unknown];
-            });
+            for &body in &self.bodies[side] {
+                each_free(self.system, body, |unknown, i, m| {
+                    mean[i] += m / self.free[side][i] * v[unknown];
+                });
+            }
         }
         means
     }
@@ -401,15 +422,14 @@ impl Sides<'_> {
         [0, 1].map(|side| {
             let whole = self.whole[side];
             let less = |i: usize| self.free[side][i] < whole * (1.0 - 1e-12);
-            self.bodies[side].is_some() && (0..self.system.dim).any(|i| acts(i) && less(i))
+            !self.bodies[side].is_empty() && (0..self.system.dim).any(|i| acts(i) && less(i))
         })
     }
 }
 
 /// Visits the unknowns of a body that no support holds, with their direction and mass.
-fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, usize, f64)) {
-    let nodes = body.map_or(&[][..], |body| &system.body_masses[body][..]);
-    if let Some(reduced) = body.and_then(|body| system.bodies[body].as_reduced()) {
+fn each_free(system: &System, body: usize, mut visit: impl FnMut(usize, usize, f64)) {
+    if let Some(reduced) = system.bodies[body].as_reduced() {
         let axes = if reduced.reduction().is_grounded {
             0
         } else {
@@ -422,7 +442,7 @@ fn each_free(system: &System, body: Option<usize>, mut visit: impl FnMut(usize, 
         }
         return;
     }
-    for &(node, m) in nodes {
+    for &(node, m) in &system.body_masses[body] {
         for (i, unknown) in system.unknowns.translations_of(node).enumerate() {
             if !system.fixed[unknown] {
                 visit(unknown, i, m);

@@ -34,7 +34,19 @@ pub(crate) fn write_after(
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     before: impl FnOnce() -> io::Result<()>,
 ) -> Result<(), Error> {
-    replace(path, content, before).map_err(Error::file("write", path))
+    replace(path, |to| content(to), before).map_err(Error::file("write", path))
+}
+
+/// As [`write()`], of a content that is not written from the start to the end.
+///
+/// # Errors
+/// As [`write()`].
+#[cfg(feature = "hdf5")]
+pub(crate) fn write_seeking(
+    path: &Path,
+    content: impl FnOnce(&mut BufWriter<NamedTempFile>) -> io::Result<()>,
+) -> Result<(), Error> {
+    replace(path, content, || Ok(())).map_err(Error::file("write", path))
 }
 
 /// Writes text as a whole file.
@@ -78,7 +90,7 @@ pub(crate) fn remove_parts(folder: &Path) {
 
 fn replace(
     path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    content: impl FnOnce(&mut BufWriter<NamedTempFile>) -> io::Result<()>,
     before: impl FnOnce() -> io::Result<()>,
 ) -> io::Result<()> {
     let folder = match path.parent() {

@@ -28,8 +28,8 @@ pub struct ImpactRow {
     /// Impulse of the impact, N s.
     pub impulse: f64,
     /// Speed at which the two bodies near each other before the impact, m/s, positive: of the mean velocities (momentum /
-    /// mass) of what no support holds.
-    pub approach_speed: f64,
+    /// mass) of what no support holds; `None` where a side has several bodies, and of a body against itself.
+    pub approach_speed: Option<f64>,
     /// Speed at which they part after it, m/s, positive when parting; `None` while still closed, and where links join
     /// further bodies to one of the two, whose motion it would leave out.
     pub rebound_speed: Option<f64>,
@@ -37,8 +37,8 @@ pub struct ImpactRow {
     /// where it means nothing ([`carom_dynamics::Impact::restitution`]).
     pub restitution: Option<f64>,
     /// Kinetic energy of the approach, ½ m w² with w the approach speed and m the reduced mass of the two bodies
-    /// (the mass of the one on an obstacle; without what supports hold and what links join to them), J.
-    pub energy_given: f64,
+    /// (the mass of the one on an obstacle; without what supports hold and what links join to them), J; `None` with `approach_speed`.
+    pub energy_given: Option<f64>,
     /// Most energy that the contact has taken up at one time, J.
     pub energy_taken: f64,
     /// Energy lost in the contact, minus the work of its forces, J, positive when lost.
@@ -124,10 +124,10 @@ impl ImpactTable {
             Cell::Number(impact.peak_mean_force),
             Cell::Number(impact.window),
             Cell::Number(impact.impulse),
-            Cell::Number(impact.approach_speed),
+            impact.approach_speed.into(),
             impact.rebound_speed.into(),
             impact.restitution.into(),
-            Cell::Number(impact.energy_given),
+            impact.energy_given.into(),
             Cell::Number(impact.energy_taken),
             Cell::Number(impact.energy_lost),
             Cell::Number(impact.energy_crushed),

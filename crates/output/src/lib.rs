@@ -12,6 +12,8 @@ pub mod checkpoint;
 pub mod compare;
 pub mod folder;
 pub mod form;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 pub mod history;
 pub mod impacts;
 pub mod maxima;

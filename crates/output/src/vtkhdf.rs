@@ -2,34 +2,56 @@
 //!
 //! An unstructured grid of version 2.0 with the group `Steps`: arrays of all instants one after the other, and where each begins. What
 //! does not change from one instant to the next stands there once. The file is made of the `.vtu` files of the instants, which stay
-//! beside it: it has the same numbers, and a run that is killed has lost nothing that the `.vtu` files do not have. All arrays are in
-//! memory while it is written: hdf5-pure 0.47 appends in place to datasets of rank one, and vectors have rank two.
+//! beside it: it has the same numbers, and a run that is killed has lost nothing that the `.vtu` files do not have. One instant after
+//! the other is read and written ([`crate::hdf5`]): the memory is that of some instants, however many there are.
 //!
 //! Source: VTKHDF file format, specification, UnstructuredGrid and temporal data (docs.vtk.org).
 
 use std::collections::BTreeMap;
-use std::io;
+use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use carom_mesh::read::vtu::{Numbers, Stored, stored};
-use hdf5_pure::{AttrValue, FileBuilder, GroupBuilder};
 
+use crate::hdf5::{Attribute, Element, Rows, Writer};
 use crate::{Error, atomic};
-
-/// Numbers of a chunk that is compressed by itself.
-const CHUNK: usize = 1 << 16;
-
-/// Level of compression.
-const DEFLATE: u32 = 4;
 
 /// An array of all instants.
 struct Grown {
     components: usize,
-    values: Numbers,
-    /// Number of the first value of each instant.
+    rows: Rows,
+    /// First row of each instant.
     begins: Vec<i64>,
-    /// Where the last instant that brought new values has them.
-    last: std::ops::Range<usize>,
+    /// The values of the last instant that brought new ones.
+    last: Option<Numbers>,
+}
+
+/// What has gone into the file.
+#[derive(Default)]
+struct Content {
+    /// The first instant, without its fields.
+    grid: Option<Stored>,
+    points: Option<Grown>,
+    /// By whether they are of points, and their name.
+    fields: BTreeMap<(bool, String), Grown>,
+}
+
+/// Why the file cannot be written.
+enum Stop {
+    Input(Error),
+    Output(io::Error),
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Stop {
+        Stop::Input(error)
+    }
+}
+
+impl From<io::Error> for Stop {
+    fn from(error: io::Error) -> Stop {
+        Stop::Output(error)
+    }
 }
 
 /// Writes one file of the instants, each with its time (s) and its `.vtu` file; whole or not at all.
@@ -37,41 +59,31 @@ struct Grown {
 /// # Errors
 /// [`Error::File`]: a file cannot be read, has another number of cells than the first one, or the system refuses.
 pub(crate) fn write(path: &Path, instants: &[(f64, PathBuf)]) -> Result<(), Error> {
-    let mut grid: Option<Stored> = None;
-    let mut points: Option<Grown> = None;
-    let mut fields: BTreeMap<(bool, String), Grown> = BTreeMap::new();
-    for (number, (_, file)) in instants.iter().enumerate() {
-        let bytes = std::fs::read(file).map_err(Error::file("read", file))?;
-        let found = stored(file, &bytes).map_err(|cause| broken(file, cause))?;
-        let first = grid.get_or_insert_with(|| found.clone());
-        if (&first.connectivity, &first.types) != (&found.connectivity, &found.types) {
-            return Err(broken(file, "other cells than those of the first instant"));
-        }
-        let coordinates = Numbers::Reals(found.points.as_flattened().to_vec());
-        let grown = points.get_or_insert_with(|| Grown::new(3, &coordinates, number));
-        grown
-            .take(coordinates, number)
-            .ok_or_else(|| broken(file, "another number of points"))?;
-        for field in found.arrays {
-            let key = (field.of_points, field.name);
-            let (components, values) = (field.components, field.values);
-            let grown = fields
-                .entry(key)
-                .or_insert_with(|| Grown::new(components, &values, number));
-            let taken = grown.take(values, number);
-            taken.ok_or_else(|| broken(file, "a field of another size"))?;
-        }
-        // fields that never change stand in the first file alone
-        for grown in fields.values_mut() {
-            grown.repeat(number);
-        }
-    }
-    let (Some(grid), Some(points)) = (grid, points) else {
+    if instants.is_empty() {
         return Ok(());
-    };
+    }
+    let mut refused = None;
+    let outcome = atomic::write_seeking(path, |to| {
+        fill(to, instants).map_err(|stop| match stop {
+            Stop::Output(cause) => cause,
+            Stop::Input(error) => {
+                refused = Some(error);
+                io::Error::from(io::ErrorKind::InvalidData)
+            }
+        })
+    });
+    refused.map_or(outcome, Err)
+}
+
+fn fill<W: Write + Seek>(to: W, instants: &[(f64, PathBuf)]) -> Result<(), Stop> {
+    let mut writer = Writer::new(to)?;
+    let mut content = Content::default();
+    for (number, (_, file)) in instants.iter().enumerate() {
+        content.take(&mut writer, number, file)?;
+    }
     let times: Vec<f64> = instants.iter().map(|(time, _)| *time).collect();
-    let file = document(&grid, &points, &fields, &times);
-    atomic::write(path, |to| file.finish_to(to).map_err(io::Error::other))
+    let root = content.close(&mut writer, &times)?;
+    Ok(writer.finish(root)?)
 }
 
 fn broken(path: &Path, cause: impl ToString) -> Error {
@@ -81,135 +93,190 @@ fn broken(path: &Path, cause: impl ToString) -> Error {
     ))
 }
 
+impl Content {
+    /// Adds the instant of this number.
+    fn take<W: Write + Seek>(
+        &mut self,
+        writer: &mut Writer<W>,
+        number: usize,
+        file: &Path,
+    ) -> Result<(), Stop> {
+        let bytes = std::fs::read(file).map_err(Error::file("read", file))?;
+        let mut found = stored(file, &bytes).map_err(|cause| broken(file, cause))?;
+        drop(bytes);
+        let arrays = std::mem::take(&mut found.arrays);
+        let coordinates = Numbers::Reals(found.points.as_flattened().to_vec());
+        let first = self.grid.get_or_insert_with(|| found.clone());
+        if (&first.connectivity, &first.types) != (&found.connectivity, &found.types) {
+            return Err(broken(file, "other cells than those of the first instant").into());
+        }
+        drop(found);
+        let points = &mut self.points;
+        let grown = points.get_or_insert_with(|| Grown::new(3, &coordinates, number));
+        grown.take(writer, coordinates, number, || {
+            broken(file, "another number of points")
+        })?;
+        for field in arrays {
+            let key = (field.of_points, field.name);
+            let (components, values) = (field.components, field.values);
+            let new = || Grown::new(components, &values, number);
+            let grown = self.fields.entry(key).or_insert_with(new);
+            grown.take(writer, values, number, || {
+                broken(file, "a field of another size")
+            })?;
+        }
+        // fields that never change stand in the first file alone
+        for grown in self.fields.values_mut() {
+            grown.repeat(number);
+        }
+        Ok(())
+    }
+
+    /// Writes what is left over; the address of the root.
+    fn close<W: Write + Seek>(self, writer: &mut Writer<W>, times: &[f64]) -> io::Result<u64> {
+        let (Some(grid), Some(points)) = (self.grid, self.points) else {
+            return Err(io::ErrorKind::InvalidData.into());
+        };
+        let count = |n: usize| [n as i64];
+        let mut root = vec![
+            (
+                "NumberOfPoints",
+                writer.integers(&count(grid.points.len()))?,
+            ),
+            ("NumberOfCells", writer.integers(&count(grid.types.len()))?),
+        ];
+        let ids = writer.integers(&count(grid.connectivity.len()))?;
+        root.push(("NumberOfConnectivityIds", ids));
+        for (name, element, values) in [
+            (
+                "Offsets",
+                Element::Integer,
+                &[&[0][..], &grid.ends].concat(),
+            ),
+            ("Connectivity", Element::Integer, &grid.connectivity),
+            ("Types", Element::Byte, &grid.types),
+        ] {
+            let mut rows = Rows::new(element, 1);
+            let values = values.iter();
+            match element {
+                Element::Byte => rows.add(writer, values.map(|value| [*value as u8]))?,
+                _ => rows.add(writer, values.map(|value| value.to_le_bytes()))?,
+            }
+            root.push((name, rows.finish(writer)?));
+        }
+        let begins = writer.integers(&points.begins)?;
+        root.push(("Points", points.rows.finish(writer)?));
+        let mut steps = steps(writer, times)?;
+        steps.push(("PointOffsets", begins));
+        let mut groups = [true, false].map(|_| (Vec::new(), Vec::new()));
+        for ((of_points, name), grown) in self.fields {
+            let begins = writer.integers(&grown.begins)?;
+            let (own, offsets) = &mut groups[usize::from(!of_points)];
+            own.push((name.clone(), grown.rows.finish(writer)?));
+            offsets.push((name, begins));
+        }
+        let mut group = |members: &[(String, u64)]| {
+            let members = members.iter().map(|(name, at)| (name.as_str(), *at));
+            writer.group(&members.collect::<Vec<_>>(), &[])
+        };
+        for ((own, offsets), [data, begins]) in groups.iter().zip([
+            ["PointData", "PointDataOffsets"],
+            ["CellData", "CellDataOffsets"],
+        ]) {
+            root.push((data, group(own)?));
+            steps.push((begins, group(offsets)?));
+        }
+        let number = [("NSteps", Attribute::Integer(times.len() as i64))];
+        root.push(("Steps", writer.group(&steps, &number)?));
+        let attributes = [
+            ("Version", Attribute::Integers(&[2, 0])),
+            ("Type", Attribute::Text("UnstructuredGrid")),
+        ];
+        let grid = writer.group(&root, &attributes)?;
+        writer.group(&[("VTKHDF", grid)], &[])
+    }
+}
+
+/// What the group `Steps` has of the instants and of the mesh, which is that of all of them.
+fn steps<W: Write + Seek>(
+    writer: &mut Writer<W>,
+    times: &[f64],
+) -> io::Result<Vec<(&'static str, u64)>> {
+    let bytes: Vec<u8> = times.iter().flat_map(|time| time.to_le_bytes()).collect();
+    let count = times.len() as u64;
+    let zeros = vec![0; times.len()];
+    let flat: Vec<u8> = vec![0; 8 * times.len()];
+    let mut column = || writer.dataset(Element::Integer, &[count, 1], &flat);
+    let (cells, ids) = (column()?, column()?);
+    Ok(vec![
+        ("Values", writer.dataset(Element::Real, &[count], &bytes)?),
+        ("PartOffsets", writer.integers(&zeros)?),
+        ("NumberOfParts", writer.integers(&vec![1; times.len()])?),
+        ("CellOffsets", cells),
+        ("ConnectivityIdOffsets", ids),
+    ])
+}
+
 impl Grown {
     /// Before the first values, which are those of the instant of this number.
     fn new(components: usize, like: &Numbers, number: usize) -> Grown {
+        let components = components.max(1);
+        let element = match like {
+            Numbers::Integers(_) => Element::Integer,
+            Numbers::Reals(_) => Element::Real,
+        };
         Grown {
-            components: components.max(1),
-            values: match like {
-                Numbers::Integers(_) => Numbers::Integers(Vec::new()),
-                Numbers::Reals(_) => Numbers::Reals(Vec::new()),
-            },
+            components,
+            rows: Rows::new(element, components),
             begins: vec![0; number],
-            last: 0..0,
+            last: None,
         }
     }
 
-    /// Adds the values of an instant, or tells that they are those of the one before; `None` where they are of another sort.
-    fn take(&mut self, new: Numbers, number: usize) -> Option<()> {
-        let known = !self.last.is_empty();
-        let begin = self.values.len();
-        match (&mut self.values, new) {
-            (Numbers::Integers(all), Numbers::Integers(new)) => {
-                if !known || all[self.last.clone()] != new {
-                    all.extend(new);
+    /// Adds the values of an instant, unless they are those of the one before; an error where they are of another sort.
+    fn take<W: Write + Seek>(
+        &mut self,
+        writer: &mut Writer<W>,
+        new: Numbers,
+        number: usize,
+        other: impl FnOnce() -> Error,
+    ) -> Result<(), Stop> {
+        let is_known = match (&self.last, &new) {
+            (None, _) => false,
+            (Some(last), new) if last.len() != new.len() => return Err(other().into()),
+            (Some(Numbers::Integers(last)), Numbers::Integers(new)) => last == new,
+            (Some(Numbers::Reals(last)), Numbers::Reals(new)) => last
+                .iter()
+                .zip(new)
+                .all(|(a, b)| a.to_bits() == b.to_bits()),
+            _ => return Err(other().into()),
+        };
+        if !is_known {
+            self.begins.push(self.rows.count() as i64);
+            match &new {
+                Numbers::Integers(new) => {
+                    self.rows
+                        .add(writer, new.iter().map(|value| value.to_le_bytes()))?;
+                }
+                Numbers::Reals(new) => {
+                    self.rows
+                        .add(writer, new.iter().map(|value| value.to_le_bytes()))?;
                 }
             }
-            (Numbers::Reals(all), Numbers::Reals(new)) => {
-                let bits =
-                    |values: &[f64]| -> Vec<u64> { values.iter().map(|v| v.to_bits()).collect() };
-                if !known || bits(&all[self.last.clone()]) != bits(&new) {
-                    all.extend(new);
-                }
-            }
-            _ => return None,
-        }
-        let end = self.values.len();
-        if known && end > begin && end - begin != self.last.len() {
-            return None;
-        }
-        if end > begin {
-            self.last = begin..end;
+            self.last = Some(new);
         }
         self.repeat(number);
-        Some(())
+        Ok(())
     }
 
     /// Tells that the instant of this number has the last values, unless it has its own.
     fn repeat(&mut self, number: usize) {
         if self.begins.len() == number {
-            self.begins.push((self.last.start / self.components) as i64);
+            let last = self.last.as_ref().map_or(0, Numbers::len);
+            let rows = (last / self.components) as u64;
+            self.begins.push((self.rows.count() - rows) as i64);
         }
     }
-
-    fn put(&self, group: &mut GroupBuilder, name: &str) {
-        let data = group.create_dataset(name);
-        match &self.values {
-            Numbers::Reals(values) => data.with_f64_data(values),
-            Numbers::Integers(values) => data.with_i64_data(values),
-        };
-        let rows = (self.values.len() / self.components) as u64;
-        let components = self.components as u64;
-        let chunk = ((CHUNK / self.components) as u64).clamp(1, rows.max(1));
-        let (shape, chunks) = match components {
-            1 => (vec![rows], vec![chunk]),
-            _ => (vec![rows, components], vec![chunk, components]),
-        };
-        data.with_shape(&shape);
-        if rows > 0 {
-            data.with_chunks(&chunks)
-                .with_shuffle()
-                .with_deflate(DEFLATE);
-        }
-    }
-}
-
-fn document(
-    grid: &Stored,
-    points: &Grown,
-    fields: &BTreeMap<(bool, String), Grown>,
-    times: &[f64],
-) -> FileBuilder {
-    let mut file = FileBuilder::new();
-    let mut root = file.create_group("VTKHDF");
-    root.set_attr("Version", AttrValue::I64Array(vec![2, 0]));
-    root.set_attr("Type", AttrValue::AsciiString("UnstructuredGrid".into()));
-    let count = |n: usize| [n as i64];
-    let integers = |group: &mut GroupBuilder, name: &str, values: &[i64]| {
-        group.create_dataset(name).with_i64_data(values);
-    };
-    integers(&mut root, "NumberOfPoints", &count(grid.points.len()));
-    integers(&mut root, "NumberOfCells", &count(grid.types.len()));
-    integers(
-        &mut root,
-        "NumberOfConnectivityIds",
-        &count(grid.connectivity.len()),
-    );
-    let offsets: Vec<i64> = std::iter::once(0)
-        .chain(grid.ends.iter().copied())
-        .collect();
-    integers(&mut root, "Offsets", &offsets);
-    integers(&mut root, "Connectivity", &grid.connectivity);
-    let types: Vec<u8> = grid.types.iter().map(|kind| *kind as u8).collect();
-    root.create_dataset("Types").with_u8_data(&types);
-    points.put(&mut root, "Points");
-    let mut steps = root.create_group("Steps");
-    steps.set_attr("NSteps", AttrValue::I64(times.len() as i64));
-    steps.create_dataset("Values").with_f64_data(times);
-    let zeros = vec![0; times.len()];
-    integers(&mut steps, "PartOffsets", &zeros);
-    integers(&mut steps, "NumberOfParts", &vec![1; times.len()]);
-    integers(&mut steps, "PointOffsets", &points.begins);
-    for name in ["CellOffsets", "ConnectivityIdOffsets"] {
-        let data = steps.create_dataset(name);
-        data.with_i64_data(&zeros)
-            .with_shape(&[times.len() as u64, 1]);
-    }
-    for (of_points, data, offsets) in [
-        (true, "PointData", "PointDataOffsets"),
-        (false, "CellData", "CellDataOffsets"),
-    ] {
-        let (mut own, mut begins) = (root.create_group(data), steps.create_group(offsets));
-        for ((_, name), grown) in fields.iter().filter(|((at, _), _)| *at == of_points) {
-            grown.put(&mut own, name);
-            integers(&mut begins, name, &grown.begins);
-        }
-        root.add_group(own.finish());
-        steps.add_group(begins.finish());
-    }
-    root.add_group(steps.finish());
-    file.add_group(root.finish());
-    file
 }
 
 #[cfg(test)]

@@ -71,6 +71,16 @@ pub enum Error {
         /// Highest frequency of the spectrum, Hz.
         frequency: f64,
     },
+    /// A signal of more samples than are worth their memory.
+    #[error(
+        "the duration has {samples:.2e} samples, and {most} are allowed: it is too long for the highest frequency, or for the step"
+    )]
+    TooManySamples {
+        /// Samples of all signals that are made together.
+        samples: f64,
+        /// Most of them.
+        most: usize,
+    },
     /// An envelope longer than its record.
     #[error("the rise and the strong part of the envelope last {least} s, the record {duration} s")]
     Envelope {

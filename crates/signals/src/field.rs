@@ -10,6 +10,9 @@ use crate::random::Random;
 /// Samples of a signal in the shortest period of its spectrum, at least.
 const SAMPLES: f64 = 8.0;
 
+/// Most samples of a field at all its places: 512 MiB of them.
+const ALL_SAMPLES: usize = 1 << 25;
+
 /// A Gaussian random load p(x, t) along a line, stationary in time and homogeneous along x.
 ///
 /// p = Σ_k √(G(f_k) Δf) Re(z_k(x) e^(2πi f_k t)), f_k = k Δf, Δf = 1/T. The z_k are independent complex Gaussian sequences along x
@@ -33,12 +36,19 @@ impl RandomField {
     /// (sin πfτ/πfτ)² of a harmonic, with τ the time between samples; the amplitudes are larger by that factor.
     ///
     /// # Errors
-    /// Points that are no spectrum; a duration shorter than the longest period.
+    /// Points that are no spectrum; a duration shorter than the longest period; more samples at all places than 512 MiB hold.
     pub fn at(&self, places: &[f64]) -> Result<Vec<Amplitude>, Error> {
         let [first, last] = self.check()?;
         let density = Amplitude::new(self.spectrum.clone())?;
-        let samples = (SAMPLES * last * self.duration).ceil() as usize;
-        let samples = samples.next_power_of_two();
+        let samples = (SAMPLES * last * self.duration).ceil();
+        let all_samples = samples * places.len() as f64;
+        if all_samples > ALL_SAMPLES as f64 {
+            return Err(Error::TooManySamples {
+                samples: all_samples,
+                most: ALL_SAMPLES,
+            });
+        }
+        let samples = (samples as usize).next_power_of_two();
         let step = self.duration / samples as f64;
         let lines = (first * self.duration).ceil() as usize..=(last * self.duration) as usize;
         let size = |k: usize| {
@@ -187,5 +197,9 @@ mod tests {
             Err(Error::TooBrief { .. })
         ));
         assert_eq!(with(vec![[0.1, 1.0]]), Err(Error::Empty));
+        assert!(matches!(
+            with(vec![[2.0, 1.0], [1e12, 1.0]]),
+            Err(Error::TooManySamples { .. })
+        ));
     }
 }

@@ -24,6 +24,8 @@ const PART: f64 = 0.5;
 const PIECES: f64 = 16.0;
 /// Widths from its middle at which a wavelet is zero: e^(-28²) is none of the numbers.
 const NOTHING: f64 = 28.0;
+/// Most steps of a record: its iterations take minutes then.
+const STEPS: usize = 1 << 20;
 /// Last part of the record over which it fades to zero.
 const FADE: f64 = 0.05;
 
@@ -58,7 +60,7 @@ impl Synthetic {
     ///
     /// # Errors
     /// Points that are no spectrum; a duration shorter than the longest period; a step longer than a quarter of the shortest;
-    /// an envelope longer than the record; a spectrum that the iterations do not meet.
+    /// more than a million steps; an envelope longer than the record; a spectrum that the iterations do not meet.
     pub fn record(&self) -> Result<Record, Error> {
         self.check()?;
         let mut random = Random::new(self.seed);
@@ -122,6 +124,13 @@ impl Synthetic {
             return Err(Error::TooCoarse {
                 step: self.step,
                 frequency: last[0],
+            });
+        }
+        let samples = (self.duration / self.step).ceil();
+        if samples > STEPS as f64 {
+            return Err(Error::TooManySamples {
+                samples,
+                most: STEPS,
             });
         }
         match self.rise + self.strong > self.duration {
@@ -389,6 +398,9 @@ mod tests {
         assert!(matches!(brief, Err(Error::TooBrief { .. })));
         let coarse = with(&|wanted| wanted.step = 0.01);
         assert!(matches!(coarse, Err(Error::TooCoarse { .. })));
+        // more memory than any machine has, if it were begun
+        let endless = with(&|wanted| wanted.duration = 1e9);
+        assert!(matches!(endless, Err(Error::TooManySamples { .. })));
         let long = with(&|wanted| wanted.strong = 11.0);
         assert!(matches!(long, Err(Error::Envelope { .. })));
         let back = with(&|wanted| wanted.spectrum[2][0] = 1.0);

@@ -143,7 +143,9 @@ impl Builder<'_> {
         let refused = |error: Error| {
             let path = match &error {
                 Error::NotASpectrum { at } => format!("{path}.spectrum[{at}]"),
-                Error::TooBrief { .. } => format!("{path}.duration"),
+                Error::TooBrief { .. } | Error::TooManySamples { .. } => {
+                    format!("{path}.duration")
+                }
                 Error::TooCoarse { .. } => format!("{path}.step"),
                 Error::Envelope { .. } => format!("{path}.strong"),
                 _ => format!("{path}.spectrum"),

@@ -103,7 +103,11 @@ impl Row {
 
     /// The impacts until `end` (s), and the driver there.
     fn impacts(&self, end: f64) -> (Vec<Impact>, Driver) {
-        let mut driver = Driver::new(System::new(self.model()).unwrap()).unwrap();
+        Row::impacts_of(self.model(), end)
+    }
+
+    fn impacts_of(model: Model, end: f64) -> (Vec<Impact>, Driver) {
+        let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
         while driver.state().time < end {
             driver.step().unwrap();
         }
@@ -153,6 +157,26 @@ fn an_impact_ends_when_its_flight_has_lasted_and_is_told_before() {
     let (impacts, _) = row.impacts(1.0);
     assert!(impacts[0].unfinished && impacts[0].restitution.is_none());
     assert_eq!(impacts[0].no_restitution, Some(NoRestitution::Unfinished));
+}
+
+#[test]
+fn bodies_that_share_a_node_hit_as_one() {
+    let row = Row::new(&[1.0, 1.5], &[1.0, 0.0]);
+    let (whole, _) = row.impacts(4.0);
+    // the same bar of two bodies; the contact is that of the one in front
+    let mut model = row.model();
+    let rear = model.bodies[0].spec.cells.drain(..60).collect();
+    let mut behind = model.bodies[0].clone();
+    behind.spec.name = "rear".to_owned();
+    behind.spec.cells = rear;
+    model.bodies.push(behind);
+    let (joined, _) = Row::impacts_of(model, 4.0);
+    let [whole, joined] = [&whole[0], &joined[0]];
+    // rounding alone: the mean of the masses, 1 and 1.5 kg
+    assert!((joined.approach - 1.0).abs() < 1e-9, "{joined:?}");
+    assert!((joined.energy_given - 0.5 / (1.0 + 1.0 / 1.5)).abs() < 1e-9);
+    let e = [whole, joined].map(|impact| impact.restitution.unwrap());
+    assert!((e[0] - e[1]).abs() < 1e-9, "{e:?}");
 }
 
 #[test]

@@ -203,8 +203,11 @@ impl Impacts {
     fn push(&mut self, system: &System, impact: &Impact) -> Result<(), Error> {
         let totals = &mut self.told.contacts[impact.contact as usize];
         let peak_mean_force = totals.mean.take();
+        let (secondary, primary) = system.sides[impact.contact as usize];
+        let are_two = Some(secondary) != primary && !system.is_of_many(impact.contact as usize);
+        let of_two = |value: f64| are_two.then_some(value);
         let over = |value: f64| (!impact.unfinished).then_some(value);
-        let parting = |value: f64| over(value).filter(|_| !totals.of_parts);
+        let parting = |value: f64| over(value).and_then(of_two).filter(|_| !totals.of_parts);
         let row = ImpactRow {
             pair: system.contacts[impact.contact as usize].name.clone(),
             start: impact.start,
@@ -214,10 +217,10 @@ impl Impacts {
             peak_mean_force,
             window: totals.window,
             impulse: impact.impulse,
-            approach_speed: impact.approach,
+            approach_speed: of_two(impact.approach),
             rebound_speed: parting(impact.rebound),
             restitution: impact.restitution.and_then(parting),
-            energy_given: impact.energy_given,
+            energy_given: of_two(impact.energy_given),
             energy_taken: impact.energy_taken,
             energy_lost: impact.energy_lost,
             energy_crushed: impact.energy_crushed,

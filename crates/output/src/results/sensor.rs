@@ -78,7 +78,7 @@ pub(crate) struct ContactPoint {
 }
 
 /// The secondary node nearest the centroid of the surface (of its points, weighted by their areas), and the primary
-/// node nearest to that one; of the contact `chosen`, else of that of the exact solution, else of the first one. The axis is
+/// node nearest to that one, unless it is the same; of the contact `chosen`, else of that of the exact solution, else of the first one. The axis is
 /// that of the exact solution, else the normal at the point, turned so that its largest component is positive.
 pub(crate) fn contact_point(
     system: &System,
@@ -104,7 +104,9 @@ pub(crate) fn contact_point(
         Target::Rigid(_) => None,
         Target::Surface(faces) => {
             let corners = faces.iter().flat_map(|face| face.corners().iter().copied());
-            nearest(system, corners, &place)
+            let found = nearest(system, corners, &place);
+            // of a surface that faces itself both would be the same node
+            found.filter(|&node| node != secondary)
         }
     };
     let axis = match reference {

@@ -199,7 +199,13 @@ fn motions(results: &Results) -> Vec<Draft> {
         let sides = sides.zip(traces);
         lines.extend(sides.map(|((name, _), motion)| computed(name, &motion[order])));
         let title = format!("Contact {contact}: {what} of its middle points along the normal");
-        draft("plot-motion", title, (what, unit), lines)
+        let mut draft = draft("plot-motion", title, (what, unit), lines);
+        if results.system.contacts.len() > 1 {
+            draft.plot.note = Some(format!(
+                "Of {contact} alone, the contact of the exact solution or the first one; a probe records the motion of any other place."
+            ));
+        }
+        draft
     };
     MOTIONS.into_iter().enumerate().map(one).collect()
 }

@@ -80,9 +80,7 @@ fn verdict(summary: &Summary) -> Tile {
 
 /// Of the contact with the largest force.
 fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
-    let contacts = summary.contacts.iter();
-    let largest = contacts.max_by(|a, b| a.1.peak_force.total_cmp(&b.1.peak_force));
-    let Some((name, contact)) = largest else {
+    let Some((name, contact, _)) = largest(&summary.contacts, |c| Some(c.peak_force)) else {
         return Vec::new();
     };
     if contact.first_closing.is_none() {
@@ -110,22 +108,38 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
         time: record.map(|record| record.peak_time),
         ..tile("Peak force", peak, format!("{of}{steps}"), "plot-force")
     }];
-    if let Some(impulse) = contact.impulse {
-        let all = summary.contacts.values().filter_map(|c| c.impulse);
-        let sum = match summary.contacts.len() {
-            1 => String::new(),
-            _ => format!("; all contacts together {}", quantity(all.sum(), "N s")),
-        };
-        let note = format!("{of}{}{sum}", closed(results, contact));
-        tiles.push(tile(
-            "Impulse",
-            quantity(impulse, "N s"),
-            note,
-            "plot-impulse",
-        ));
+    tiles.extend(impulse(results, summary));
+    if contact.impulse.is_some() {
         tiles.push(restitution(summary, name, contact));
     }
     tiles
+}
+
+/// The contact with the largest number of those that have one, and that number; the last of equals.
+fn largest(
+    contacts: &BTreeMap<String, Contact>,
+    number: impl Fn(&Contact) -> Option<f64>,
+) -> Option<(&String, &Contact, f64)> {
+    let all = contacts.iter();
+    let all = all.filter_map(|(name, contact)| Some((name, contact, number(contact)?)));
+    all.max_by(|a, b| a.2.total_cmp(&b.2))
+}
+
+/// Of the contact with the largest impulse, which need not be that with the largest force.
+fn impulse(results: &Results, summary: &Summary) -> Option<Tile> {
+    let all = summary.contacts.values().filter_map(|c| c.impulse);
+    let (name, contact, largest) = largest(&summary.contacts, |contact| contact.impulse)?;
+    let (of, sum) = match summary.contacts.len() {
+        1 => Default::default(),
+        count => {
+            let sum = quantity(all.sum(), "N s");
+            let of = format!("{name}, largest of {count} contacts; ");
+            (of, format!("; all contacts together {sum}"))
+        }
+    };
+    let note = format!("{of}{}{sum}", closed(results, contact));
+    let value = quantity(largest, "N s");
+    Some(tile("Impulse", value, note, "plot-impulse"))
 }
 
 fn closed(results: &Results, contact: &Contact) -> String {
@@ -154,12 +168,11 @@ fn restitution(summary: &Summary, name: &str, contact: &Contact) -> Tile {
             let note = format!("of the last impact of {name}{}", exact.unwrap_or_default());
             (quantity(value, ""), note)
         }
-        None => {
-            let why = contact.no_restitution.clone();
-            let why =
-                why.unwrap_or_else(|| "links join further bodies to one of the two".to_owned());
-            ("–".to_owned(), format!("none: {why}"))
+        None if summary.contacts.len() > 1 => {
+            let why = no_restitution(contact);
+            ("–".to_owned(), format!("none of {name}: {why}"))
         }
+        None => ("–".to_owned(), format!("none: {}", no_restitution(contact))),
     };
     let section = if contact.impacts > 0 {
         "impacts"
@@ -167,6 +180,11 @@ fn restitution(summary: &Summary, name: &str, contact: &Contact) -> Tile {
         "plot-force"
     };
     tile("Restitution", text, note, section)
+}
+
+fn no_restitution(contact: &Contact) -> String {
+    let why = contact.no_restitution.clone();
+    why.unwrap_or_else(|| "links join further bodies to one of the two".to_owned())
 }
 
 /// What was lost and where; the largest two places first.
@@ -269,4 +287,27 @@ fn coordinates(system: &System, x: &[f64]) -> String {
         .map(|x| quantity(if x.abs() < least { 0.0 } else { *x }, "m"))
         .collect();
     format!("({})", all.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_force_and_the_largest_impulse_may_be_of_two_contacts() {
+        let contact = |peak_force, impulse| Contact {
+            peak_force,
+            impulse,
+            ..Contact::default()
+        };
+        let contacts = BTreeMap::from([
+            ("hard".to_owned(), contact(15.0, Some(0.7))),
+            ("soft".to_owned(), contact(3.0, Some(1.7))),
+            ("still".to_owned(), contact(0.0, None)),
+        ]);
+        let (name, _, force) = largest(&contacts, |c| Some(c.peak_force)).unwrap();
+        assert_eq!((name.as_str(), force), ("hard", 15.0));
+        let (name, _, impulse) = largest(&contacts, |c| c.impulse).unwrap();
+        assert_eq!((name.as_str(), impulse), ("soft", 1.7));
+    }
 }
