@@ -153,6 +153,8 @@ def plane(tmp_path, law, given, friction=None):
         case["contact"] = {"tip": {"secondary": "tip", "obstacle": surface, "law": {law: given}}}
         if friction is not None:
             case["contact"]["tip"]["friction"] = {"coulomb": friction}
+            # what the iterations of a case with friction may leave over is rounding, as of matrices
+            case["time"]["newton"] = {"tolerance": 1e-14}
         return chosen
 
     return change
@@ -186,7 +188,7 @@ def test_it_does_so_on_a_rigid_plane(name, parameters, law, given, tmp_path):
 
 
 RUBBING = [
-    ("newmark", {}, "displacement", {}),
+    ("newmark", {"beta": 0.49, "gamma": 0.9}, "displacement", {}),
     ("theta", {"theta": 0.6}, "velocity", NOW),
     ("central-difference", {}, "velocity", NOW),
     ("energy-momentum", {}, "velocity", NOW),
@@ -199,6 +201,8 @@ RUBBING = [
 
 @pytest.mark.parametrize("name, parameters, law, given", RUBBING)
 def test_it_does_so_with_friction(name, parameters, law, given, tmp_path):
+    """Newmark's scheme with damping: without it and without projection a mass larger by 1e-14 changes the force by 2e-7, so that nothing
+    can be compared to 1e-8."""
     mu = 0.3
     ours, history, apart = both(name, parameters, tmp_path, plane(tmp_path, law, given, mu), Law(law, **given), mu)
     assert ours.max() > 0.0
