@@ -17,17 +17,19 @@ from .cases import Case, Check, resume, schema
 from .matrices import Matrices, MatrixHistory
 from .results import Results, Summary
 from .simulation import Simulation
-from .sweeps import Table, compare, study
+from .sweeps import Fitted, Study, Table, compare, study
 
 __all__ = [
     "Case",
     "CaseError",
     "Check",
+    "Fitted",
     "Matrices",
     "MatrixHistory",
     "Results",
     "RunError",
     "Simulation",
+    "Study",
     "Summary",
     "Table",
     "__version__",

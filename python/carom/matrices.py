@@ -1,4 +1,4 @@
-"""A case from matrices: M ü + C u̇ + K u = p(t) + Nᵀ P, with gaps g = g₀ + N u that obey contact laws.
+"""A case from matrices: M ü + C u̇ + K u = p(t) + Nᵀ P + Tᵀ t, with gaps g = g₀ + N u that obey contact laws, and friction along T u̇.
 
 For models of other programs: reduced by modes, read from Matrix Market, or assembled with SciPy.
 """
@@ -25,13 +25,15 @@ class MatrixHistory:
 
     Attributes:
         time: ends of the steps, s.
-        force: of each contact row in the step, N.
+        force: of each contact row in the step, N, positive in compression.
+        friction: along each tangent in the step, N; shape (steps, contact rows, tangents of one), without friction none.
         displacement: of the unknowns, m.
         gap: of each contact row, m.
     """
 
     time: NDArray[np.float64]
     force: NDArray[np.float64]
+    friction: NDArray[np.float64]
     displacement: NDArray[np.float64]
     gap: NDArray[np.float64]
 
@@ -50,11 +52,21 @@ class Matrices:
         C: damping, N s/m. Default: none.
         u, v: displacement (m) and velocity (m/s) at the start. Default: at rest.
         load: p in N, an array, or a function of time. Default: none.
+        friction: coefficient of Coulomb's friction, one for all rows or one each. Default: none.
+        tangents: with friction the derivatives of the sliding by the unknowns: one row for each row of N in the plane, two in space, those of a
+            point one after another. The friction is at most `friction` times the normal force, and opposes the sliding.
 
-    Held unknowns are left out of the matrices. Only schemes whose step is one solve, and laws that the scheme takes.
+    Held unknowns are left out of the matrices. All schemes can be used, with the laws that they take in a case; the mass need not be
+    lumped. Schemes with stages beside the step (contact-stabilised, Laursen-Love) and those whose contact forces act through the mass (Kane,
+    nonsmooth-alpha), like laws with projection, factorise M as well. Energy-momentum is the scheme of Laursen and Chawla here: on a linear
+    model they are the same.
+
+    What matrices cannot say is refused or not there. A law that the scheme cannot hold is refused, as in a case: in explicit steps no force
+    changes the gap at the end. Contact rows are constant, so that points neither slide to other faces nor turn. A massless
+    contact node has no place in a positive definite M: eliminate it. Steps are of one length, since the matrix of the step is factorised once.
 
     Raises:
-        ValueError: sizes that do not fit, a scheme or a law that cannot be used here.
+        ValueError: sizes that do not fit, or a law that the scheme cannot hold.
         RunError: M, or M and K as the scheme joins them, are not positive definite.
     """
 
@@ -72,6 +84,8 @@ class Matrices:
         u: ArrayLike | None = None,
         v: ArrayLike | None = None,
         load: Load | None = None,
+        friction: float | ArrayLike | None = None,
+        tangents: Any = None,
     ) -> None:
         from scipy import sparse
 
@@ -94,14 +108,25 @@ class Matrices:
             raise ValueError(f"{len(laws)} laws; accepted: {self._gap.size}, one for each row of N")
         self._load, self._n, self._dt = load, n, dt
         start = [np.zeros(n) if given is None else np.asarray(given, dtype=float) for given in (u, v)]
-        rows = self._rows
-        terms = [
-            list(zip(rows.indices[a:b].tolist(), rows.data[a:b].tolist()))
-            for a, b in zip(rows.indptr[:-1], rows.indptr[1:])
-        ]
+        terms = [[normal] for normal in _terms(self._rows)]
+        coefficients = np.zeros(self._gap.size)
+        self._tangents = 0
+        if (friction is None) != (tangents is None):
+            raise ValueError("friction takes `friction` and `tangents`")
+        if friction is not None:
+            coefficients = np.array(np.broadcast_to(np.asarray(friction, dtype=float), coefficients.shape))
+            if not (np.isfinite(coefficients) & (coefficients >= 0.0)).all():
+                raise ValueError("friction accepts finite numbers of zero or more")
+            sliding = sparse.csr_array(np.atleast_2d(tangents) if not hasattr(tangents, "tocsr") else tangents)
+            points = self._gap.size
+            if sliding.shape not in ((points, n), (2 * points, n)):
+                raise ValueError(f"tangents of the shape {sliding.shape}; accepted: {(points, n)} in the plane, {(2 * points, n)} in space")
+            self._tangents = sliding.shape[0] // points
+            for k, tangent in enumerate(_terms(sliding)):
+                terms[k // self._tangents].append(tangent)
         self._raw = _carom.MatrixRun(
             (n, _csr(mass), None if damping is None else _csr(damping), _csr(stiffness)),
-            (terms, self._gap.tolist(), [one._json for one in laws]),
+            ([row for rows in terms for row in rows], self._gap.tolist(), [one._json for one in laws], coefficients.tolist()),
             (scheme._json, dt),
             (start[0].tolist(), start[1].tolist(), self._at(0.0).tolist()),
         )
@@ -126,10 +151,11 @@ class Matrices:
         loads = [self._at((start + k) * self._dt + instant).tolist() for k in range(steps)]
         # a gap within rounding of the largest one is closed
         tolerance = 1e-12 * float(np.abs(self._gap).max(initial=0.0))
-        force, displacement = (np.array(rows, dtype=np.float64) for rows in self._raw.run(loads, tolerance))
+        force, friction, displacement = (np.array(rows, dtype=np.float64) for rows in self._raw.run(loads, tolerance))
         time = np.asarray((start + 1 + np.arange(steps)) * self._dt, dtype=np.float64)
         gap: NDArray[np.float64] = self._gap + (self._rows @ displacement.T).T
-        return MatrixHistory(time, force, displacement, gap)
+        friction = friction.reshape(steps, self._gap.size, 2)[:, :, : self._tangents]
+        return MatrixHistory(time, force, friction, displacement, gap)
 
 
 def _matrix(given: Any) -> Any:
@@ -138,6 +164,12 @@ def _matrix(given: Any) -> Any:
     if isinstance(given, str) or hasattr(given, "__fspath__"):
         given = io.mmread(given)
     return sparse.csr_array(given).astype(float)
+
+
+def _terms(rows: Any) -> list[list[tuple[int, float]]]:
+    """Unknowns and coefficients of each row."""
+    ends = zip(rows.indptr[:-1], rows.indptr[1:])
+    return [list(zip(rows.indices[a:b].tolist(), rows.data[a:b].tolist())) for a, b in ends]
 
 
 def _csr(matrix: Any) -> tuple[list[int], list[int], list[float]]:

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use carom_case::schema::{Case, json_schema};
 use carom_case::{
-    Axis, Built, Choices, Input, Locator, NotResumed, Problem, Resume, Source, Sweep, SweepError,
+    Axis, Built, Choices, Fit, Input, Locator, NotResumed, Problem, Resume, Source, Sweep,
+    SweepError,
 };
 use carom_dynamics::Observer;
 use carom_output::compare::Variant;
@@ -172,24 +173,27 @@ fn row(variant: &Variant) -> Row {
     (variant.name.clone(), verdict, reason)
 }
 
+/// Schemes, laws, other cases, and the reference.
+type Chosen = (Vec<String>, Vec<String>, Vec<Given>, Option<String>);
+
 /// Runs the variants of a case into a folder.
 #[pyfunction]
 pub(crate) fn compare(
     py: Python<'_>,
     given: Given,
-    choices: (Vec<String>, Vec<String>, Option<String>),
+    choices: Chosen,
     into: (PathBuf, Option<String>, usize),
 ) -> PyResult<Vec<Row>> {
-    let input = input(given);
-    let (schemes, laws, reference) = choices;
+    let case = input(given);
+    let (schemes, laws, beside, reference) = choices;
     let choices = Choices {
         schemes,
         laws,
-        beside: Vec::new(),
+        beside: beside.into_iter().map(input).collect(),
         reference,
     };
     sweep(py, into, |sweep| {
-        let (comparison, _) = carom_case::compare(&input, &choices, sweep)?;
+        let (comparison, _) = carom_case::compare(&case, &choices, sweep)?;
         Ok(comparison.variants.iter().map(row).collect())
     })
 }
@@ -207,6 +211,23 @@ pub(crate) fn study(
         let axes = axes.iter().map(|axis| Axis::read(axis));
         let axes = axes.collect::<Result<Vec<_>, _>>()?;
         let (study, _) = carom_case::study(&input, &axes, sweep)?;
+        Ok(study.runs.iter().map(|run| row(&run.variant)).collect())
+    })
+}
+
+/// Looks for the value of a key that gives a result, and writes the trials into a folder. `wanted`: the key, `least,largest`, and `result=value`.
+#[pyfunction]
+pub(crate) fn fit(
+    py: Python<'_>,
+    given: Given,
+    wanted: (String, String, String),
+    into: (PathBuf, Option<String>, usize),
+) -> PyResult<Vec<Row>> {
+    let input = input(given);
+    let (key, between, to) = wanted;
+    sweep(py, into, |sweep| {
+        let fit = Fit::read(&key, &between, &to, sweep.contact)?;
+        let (study, _) = carom_case::fit(&input, &fit, sweep)?;
         Ok(study.runs.iter().map(|run| row(&run.variant)).collect())
     })
 }

@@ -33,6 +33,7 @@ fn _carom(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(cases::resume, module)?)?;
     module.add_function(wrap_pyfunction!(cases::compare, module)?)?;
     module.add_function(wrap_pyfunction!(cases::study, module)?)?;
+    module.add_function(wrap_pyfunction!(cases::fit, module)?)?;
     module.add_function(wrap_pyfunction!(interface::solve_normal, module)?)?;
     module.add_function(wrap_pyfunction!(interface::solve_friction, module)?)?;
     module.add_function(wrap_pyfunction!(exact::hertz_collision, module)?)?;

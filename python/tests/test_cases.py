@@ -165,5 +165,68 @@ def test_tables_of_variants_and_of_values(bars, tmp_path):
     assert not (tmp_path / "wrong").exists()
 
 
+def test_other_cases_get_rows_beside_the_variants(bars, tmp_path):
+    coarse = bars.copy()
+    coarse["time"]["step"] = {"courant": 1.0}
+    coarse.save(tmp_path / "coarse.toml")
+    table = carom.compare(bars, ["theta"], beside=[tmp_path / "coarse.toml", coarse], folder=tmp_path / "all", reference="none")
+    assert list(table) == ["theta", "coarse", "beside"]
+    steps = [table[name].summary.time.steps for name in table]
+    assert steps[1] == steps[2] == pytest.approx(steps[0] / 2, abs=1)
+    forces = [table[name].columns["contact.shock.force_n"] for name in ("coarse", "beside")]
+    assert forces[0].max() > 0.0 and np.array_equal(*forces)
+    with pytest.raises(carom.CaseError, match="cannot read the case file"):
+        carom.compare(bars, ["theta"], beside=[tmp_path / "none.toml"], folder=tmp_path / "wrong")
+    assert not (tmp_path / "wrong").exists()
+
+
+KEY = "time.scheme.theta.theta"
+
+
+def test_a_fit_finds_what_the_command_finds(bars, tmp_path, command):
+    study = carom.study(bars, fit=KEY, between=(0.5, 1), to={"restitution": 0.92}, contact="shock", folder=tmp_path / "ours")
+    found = study.fitted
+    assert (found.key, found.goal, found.reason) == (KEY, {"restitution": 0.92}, None)
+    assert found.reached == pytest.approx(0.92, abs=1e-6) and 0.5 < found.value < 1
+    assert found.run in list(study)
+    # the run of that name is a run with that value
+    chosen = bars.copy()
+    chosen["time"]["scheme"] = {"theta": {"theta": found.value}}
+    again = chosen.run(tmp_path / "again")
+    assert np.array_equal(again.columns["contact.shock.force_n"], study[found.run].columns["contact.shock.force_n"])
+    bars.save(tmp_path / "case.toml")
+    options = ["--fit", KEY, "--between", "0.5,1", "--to", "restitution=0.92", "--contact", "shock", "--quiet"]
+    subprocess.run([command, "study", tmp_path / "case.toml", *options], check=True, capture_output=True)
+    assert (tmp_path / "case.study/fit.json").read_bytes() == (tmp_path / "ours/fit.json").read_bytes()
+
+
+def test_a_fit_comes_nearest_to_a_force_history(bars, tmp_path):
+    bars["time"]["scheme"] = {"theta": {"theta": 0.8}}
+    bars.run(tmp_path / "measured")
+    history = tmp_path / "measured/histories.csv"
+    study = carom.study(bars, fit=KEY, between=(0.5, 1), to={"force": history}, contact="shock", folder=tmp_path / "fit")
+    assert study.fitted.goal == "force"
+    # within a thousandth of the range
+    assert study.fitted.value == pytest.approx(0.8, abs=5e-4)
+
+
+def test_what_cannot_be_fitted_is_said(bars, tmp_path):
+    far = carom.study(bars, fit=KEY, between=(0.5, 1), to={"restitution": 0.1}, folder=tmp_path / "far")
+    assert far.fitted.value is None and far.fitted.run is None and far.fitted.reason
+    assert len(far) == len(far.frame) > 0
+    assert carom.study(bars, {KEY: [0.6]}, folder=tmp_path / "axes").fitted is None
+    for wrong in ({"fit": KEY}, {"fit": KEY, "between": (0, 1)}, {"to": {"restitution": 0.5}}):
+        with pytest.raises(TypeError, match="`fit`, `between` and `to`"):
+            carom.study(bars, folder=tmp_path / "wrong", **wrong)
+    with pytest.raises(TypeError, match="no axes"):
+        carom.study(bars, {KEY: [0.6]}, fit=KEY, between=(0.5, 1), to={"restitution": 0.5}, folder=tmp_path / "wrong")
+    for key, to in ((KEY, {"rest": 0.5}), ("time.scheme.theta.teta", {"restitution": 0.9})):
+        with pytest.raises(carom.CaseError):
+            carom.study(bars, fit=key, between=(0.5, 1), to=to, folder=tmp_path / "wrong")
+    with pytest.raises(carom.CaseError, match="no range"):
+        carom.study(bars, fit=KEY, between=(1, 0.5), to={"restitution": 0.9}, folder=tmp_path / "wrong")
+    assert not (tmp_path / "wrong").exists()
+
+
 def test_the_schema_names_the_tables():
     assert {"mesh", "body", "time", "contact"} <= set(carom.schema()["properties"])

@@ -116,6 +116,84 @@ def test_a_controller_damps_the_oscillator():
     assert energy == pytest.approx(expected, rel=0.1 + 2 * 0.1 * omega * 3.0 * omega * 1.5e-3 / 2)
 
 
+BAR = {"density": 7800.0, "young": 210e9, "area": 6.45e-4, "length": 10.0}
+PUSHED = {"far": "bar.left", "inner": "tip.right"}
+
+
+def glued(substeps, outer):
+    """A free bar of 10 m whose last 2 m are a zone of their own with steps as many times as short, glued over 0.8 m."""
+    mesh = {"bar": {"from": [-10.0], "to": [-1.2], "elements": 44}, "tip": {"from": [-2.0], "to": [0.0], "elements": 40}}
+    body = {"material": "steel", "section": {"bar": {"area": BAR["area"]}}}
+    return carom.Case(
+        {
+            "carom": 1,
+            "mesh": {"generate": {name: {"line": line} for name, line in mesh.items()}},
+            "material": {"steel": {"density": BAR["density"], "elastic": {"young": BAR["young"], "poisson": 0.0}}},
+            "body": {name: {"region": name, **body} for name in mesh},
+            "zone": {
+                "inner": {"bodies": ["tip"], "scheme": {"newmark": {}}},
+                "outer": {"bodies": ["bar"], "scheme": outer, "substeps": {"inner": substeps}},
+            },
+            "arlequin": {"glue": {"inner": "tip", "outer": "bar"}},
+            "time": {"end": 2e-3, "step": 2e-5},
+        }
+    )
+
+
+@pytest.mark.parametrize("outer", [{"newmark": {}}, {"central-difference": {}}])
+@pytest.mark.parametrize("substeps", [1, 4])
+@pytest.mark.parametrize("group", PUSHED.values())
+def test_a_force_in_zones_is_that_of_a_load(substeps, outer, group):
+    """A constant force of a program is the load of the same size, to the last bit."""
+    loaded = glued(substeps, outer)
+    points = [{"time": time, "factor": 1.0} for time in (0.0, 1.0)]
+    loaded["load"] = {"push": {"on": group, "force": [1000.0], "amplitude": points}}
+    expected = loaded.simulate().run()
+    simulation = glued(substeps, outer).simulate()
+    simulation.add_force(group, [1.0], 1000.0)
+    simulation.run()
+    assert np.abs(expected.displacement).max() > 0.0
+    assert np.array_equal(simulation.displacement, expected.displacement)
+    assert np.array_equal(simulation.velocity, expected.velocity)
+
+
+def controlled(case, group, folder):
+    """The simulation after a run under a controller on a group, and the sizes that this gave, one before each outer step."""
+    sizes = []
+
+    def push(simulation):
+        assert simulation.steps == len(sizes)
+        sizes.append(1000.0 * np.sin(0.1 * simulation.steps + 0.5) - 2e3 * simulation.velocity[pushed, 0].mean())
+        return sizes[-1]
+
+    with case.simulate(folder) as simulation:
+        simulation.add_force(group, [1.0], push)
+        pushed = simulation.nodes(group)
+        simulation.run()
+    assert len(sizes) == simulation.steps == round(case["time"]["end"] / case["time"]["step"])
+    return simulation, np.array(sizes)
+
+
+@pytest.mark.parametrize("outer", [{"newmark": {}}, {"theta": {"theta": 0.5}}, {"central-difference": {}}])
+@pytest.mark.parametrize("substeps", [1, 4])
+@pytest.mark.parametrize("group", PUSHED.values())
+def test_a_controller_in_zones_keeps_the_balances(group, substeps, outer, tmp_path):
+    simulation, _ = controlled(glued(substeps, outer), group, tmp_path / "results")
+    assert abs(simulation.summary.momentum.final[0]) > 0.1
+    assert simulation.summary.momentum.relative_residual < 1e-11
+    assert abs(simulation.energy_residual) < 1e-11
+
+
+@pytest.mark.parametrize("substeps", [1, 4])
+@pytest.mark.parametrize("group", PUSHED.values())
+def test_a_controller_in_zones_gives_its_impulse(group, substeps, tmp_path):
+    """In a scheme that balances forces at one instant of the step, the momentum is the sum of the sizes times the outer step."""
+    case = glued(substeps, {"theta": {"theta": 0.5}})
+    case["zone"]["inner"]["scheme"] = {"theta": {"theta": 0.5}}
+    simulation, sizes = controlled(case, group, tmp_path / "results")
+    assert simulation.summary.momentum.final[0] == pytest.approx(sizes.sum() * simulation.dt, rel=1e-11)
+
+
 def test_forces_are_checked(bars):
     simulation = bars.simulate()
     with pytest.raises(carom.CaseError, match="no group of this name"):

@@ -1,14 +1,16 @@
 //! Forces and statuses of contact points: pure problems, numbers in and numbers out.
 //!
 //! [`interface`]: complementarity without friction. [`coulomb`]: with Coulomb friction. [`Weak`]: what the weak form of a
-//! law adds to the compliance. [`Compliance`]: the matrix of the problem, or the sparse rows that it is a product of. No model, no state: the driver of `carom-dynamics` states the problems.
+//! law adds to the compliance. [`impulses_of_work`]: impulses that give back a work. [`Compliance`]: the matrix of the problem, or the sparse rows that it is a product of. No model, no state: the driver of `carom-dynamics` states the problems.
 
 mod compliance;
 pub mod coulomb;
 pub mod interface;
 mod lumped;
 mod weak;
+mod work;
 
 pub use compliance::{Compliance, Condensed};
 pub use lumped::{Lumped, Unknown};
 pub use weak::Weak;
+pub use work::impulses_of_work;

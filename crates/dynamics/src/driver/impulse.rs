@@ -3,6 +3,7 @@
 
 use carom_contact::law::{Displacement, Local, Status};
 use carom_contact::{Law, Rows};
+use carom_nonsmooth::impulses_of_work;
 
 use super::linking::{Linking, add_all_forces};
 use super::weak::{WeakForms, WithWeak};
@@ -11,9 +12,6 @@ use crate::error::Error;
 use crate::interface::{Candidate, Failure, Interface};
 use crate::operator::Operators;
 use crate::system::System;
-
-/// Most sweeps over the points in which impulses of given work are sought; some ten are usual.
-const MOST_SWEEPS: usize = 1000;
 
 /// Solver for `0 <= q + D ΔI ⟂ I + ΔI >= 0`, D = N M⁻¹ Nᵀ, with q a quantity of the points and I what acts on them
 /// already. Then q + D ΔI is the quantity closest to the one without any I, in the norm of the mass, among those that are
@@ -101,9 +99,6 @@ impl Impulses {
 
     /// The impulses I > 0 of the points (ascending) with `I_i (r_i + ½ (D I)_i) = w_i`. `rates`: r of each; `works`: w of
     /// each, positive.
-    ///
-    /// They are where the strictly convex `I · r + ¼ I · D I - Σ w_i ln I_i` is least: coordinates in turn go to their own
-    /// least value, a root of a quadratic equation, until none changes.
     pub(super) fn give_work(
         &mut self,
         system: &System,
@@ -112,28 +107,8 @@ impl Impulses {
         rates: &[f64],
         works: &[f64],
     ) {
-        let n = points.len();
         let (d, _) = self.mass.matrix(system, rows, points);
-        self.added.clear();
-        self.added.resize(n, 0.0);
-        for _ in 0..MOST_SWEEPS {
-            let mut change: f64 = 0.0;
-            for i in 0..n {
-                let row = &d[i * n..(i + 1) * n];
-                let of_all: f64 = row.iter().zip(&self.added).map(|(d, q)| d * q).sum();
-                let t = rates[i] + 0.5 * (of_all - row[i] * self.added[i]);
-                let root = (t * t + 2.0 * row[i] * works[i]).sqrt();
-                let impulse = match t > 0.0 {
-                    true => 2.0 * works[i] / (root + t),
-                    false => (root - t) / row[i],
-                };
-                change = change.max((impulse - self.added[i]).abs() / impulse);
-                self.added[i] = impulse;
-            }
-            if change <= 4.0 * f64::EPSILON {
-                break;
-            }
-        }
+        impulses_of_work(d, rates, works, &mut self.added);
         self.spread(system, points);
     }
 
