@@ -8,7 +8,7 @@ level = -Acos(touched / radius);
 Sphere(1) = {0, 0, radius, radius, -Pi / 2, level, Pi / 2};
 Sphere(2) = {0, 0, radius, radius, level, Pi / 2, Pi / 2};
 Coherence;
-Field[1] = MathEval; Field[1].F = "0.6 + 0.35 * Sqrt(x*x + y*y + z*z)";
+Field[1] = MathEval; Field[1].F = "0.6 + 0.25 * Sqrt(x*x + y*y + z*z)";
 Background Field = 1;
 Mesh.MeshSizeExtendFromBoundary = 0;
 Mesh.MeshSizeFromPoints = 0;
