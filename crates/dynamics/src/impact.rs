@@ -321,31 +321,48 @@ impl Along {
 /// joined have one body each.
 struct Sides<'a> {
     system: &'a System,
-    bodies: [Vec<usize>; 2],
+    sides: [Side; 2],
     whole: [f64; 2],
     free: [[f64; 3]; 2],
+}
+
+/// The bodies of a side.
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Nobody,
+    Body(usize),
+    /// All of a part of the system.
+    Part(usize),
+}
+
+impl Side {
+    fn bodies(self, system: &System) -> impl Iterator<Item = usize> + '_ {
+        let all = system.part_of_body.iter().enumerate();
+        let own = all.filter(move |&(body, &part)| match self {
+            Side::Nobody => false,
+            Side::Body(own) => body == own,
+            Side::Part(own) => part == own,
+        });
+        own.map(|(body, _)| body)
+    }
 }
 
 impl Sides<'_> {
     fn of(system: &System, contact: usize) -> Sides<'_> {
         let (secondary, primary) = system.sides[contact];
         let part = |body: usize| system.part_of_body[body];
-        let joined = |body: usize| -> Vec<usize> {
-            let all = 0..system.bodies.len();
-            all.filter(|&other| part(other) == part(body)).collect()
-        };
-        let bodies = match (primary, system.is_of_many(contact)) {
+        let sides = match (primary, system.is_of_many(contact)) {
             // no mass and no motion stands for all of them
-            (_, true) => [Vec::new(), Vec::new()],
-            (None, false) => [joined(secondary), Vec::new()],
+            (_, true) => [Side::Nobody; 2],
+            (None, false) => [Side::Part(part(secondary)), Side::Nobody],
             (Some(primary), false) if part(primary) == part(secondary) => {
-                [vec![secondary], vec![primary]]
+                [secondary, primary].map(Side::Body)
             }
-            (Some(primary), false) => [joined(secondary), joined(primary)],
+            (Some(primary), false) => [secondary, primary].map(|body| Side::Part(part(body))),
         };
         let mut free = [[0.0; 3]; 2];
-        for (bodies, free) in bodies.iter().zip(&mut free) {
-            for &body in bodies {
+        for (side, free) in sides.iter().zip(&mut free) {
+            for body in side.bodies(system) {
                 match system.bodies[body].as_reduced() {
                     Some(_) if system.bodies[body].balances_itself() => {
                         free.iter_mut().for_each(|m| *m += system.body_mass(body));
@@ -355,14 +372,13 @@ impl Sides<'_> {
                 }
             }
         }
-        let mass = |bodies: &Vec<usize>| match bodies.is_empty() {
-            true => f64::INFINITY,
-            false => bodies.iter().map(|&body| system.body_mass(body)).sum(),
-        };
-        let whole = bodies.each_ref().map(mass);
+        let whole = sides.map(|side| match side {
+            Side::Nobody => f64::INFINITY,
+            side => side.bodies(system).map(|body| system.body_mass(body)).sum(),
+        });
         Sides {
             system,
-            bodies,
+            sides,
             whole,
             free,
         }
@@ -372,7 +388,7 @@ impl Sides<'_> {
     fn velocities(&self, v: &[f64]) -> [[f64; 3]; 2] {
         let mut means = [[0.0; 3]; 2];
         for (side, mean) in means.iter_mut().enumerate() {
-            for &body in &self.bodies[side] {
+            for body in self.sides[side].bodies(self.system) {
                 each_free(self.system, body, |unknown, i, m| {
                     mean[i] += m / self.free[side][i] * v[unknown];
                 });
@@ -422,7 +438,7 @@ impl Sides<'_> {
         [0, 1].map(|side| {
             let whole = self.whole[side];
             let less = |i: usize| self.free[side][i] < whole * (1.0 - 1e-12);
-            !self.bodies[side].is_empty() && (0..self.system.dim).any(|i| acts(i) && less(i))
+            self.sides[side] != Side::Nobody && (0..self.system.dim).any(|i| acts(i) && less(i))
         })
     }
 }

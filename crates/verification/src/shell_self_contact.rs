@@ -206,7 +206,7 @@ pub(crate) const CHECK: Check = Check {
             // a mean over the prongs closes at another step than the mean over a half and a wall
             let (name, own) = match integration {
                 Integration::Node => ("nodes", [mirrored(pin)?, kept(pin, steps)?].concat()),
-                _ => ("mortar", kept(pin, steps / 2)?),
+                _ => ("mortar", kept(pin, steps.min(150))?),
             };
             rows.extend(own.into_iter().map(|row| Row {
                 quantity: format!("{name}: {}", row.quantity),
