@@ -20,6 +20,8 @@ const FREE: [&str; 3] = ["title", "output", "time.end"];
 pub(crate) struct Origin {
     /// Title of the report.
     pub(crate) title: String,
+    /// Name of the case file.
+    pub(crate) file: String,
     /// Folder that the paths of the case file start from, relative to the results folder.
     pub(crate) folder: PathBuf,
     /// Overrides of the command line, `key.path=value`.
@@ -35,8 +37,10 @@ impl Origin {
     pub(crate) fn of(input: &Input, case: &Case, results: &Path) -> Origin {
         let overrides = input.sources.iter().filter(|s| s.name == "--set");
         let name = input.sources.first().map(|source| source.name.clone());
+        let file = name.as_deref().and_then(|name| Path::new(name).file_name());
         let case_value = value(case);
         Origin {
+            file: file.unwrap_or_default().to_string_lossy().into_owned(),
             title: case.title.clone().or(name).unwrap_or_default(),
             folder: relative(results, &input.folder),
             overrides: overrides.map(|source| source.text.clone()).collect(),
@@ -60,6 +64,7 @@ impl Origin {
     pub(crate) fn of_the_rest(self, input: &Input, case: &Case) -> Origin {
         Origin {
             title: self.title,
+            file: self.file,
             folder: self.folder,
             ..Origin::of(input, case, Path::new(""))
         }

@@ -176,7 +176,7 @@ pub(crate) fn settings(
     origin: &Origin,
 ) -> Settings {
     let file = input.sources.first();
-    let (name, file) = file.map_or(("", ""), |source| (&source.name, &source.text));
+    let file = file.map_or("", |source| &source.text);
     let checkpoint = case.output.checkpoint.unwrap_or_default();
     Settings {
         folder,
@@ -193,7 +193,7 @@ pub(crate) fn settings(
                 .collect::<Vec<_>>()
                 .join(", "),
         },
-        study: convergence::study((name, case), &built.system.mesh, &origin.overrides),
+        study: convergence::study((&origin.file, case), &built.system.mesh, &origin.overrides),
         end: built.end,
         probes: built
             .probes

@@ -111,8 +111,7 @@ fn the_study_that_a_verdict_names_varies_the_mesh_and_the_step_of_its_case() {
         ),
     ] {
         let command = command(step, &[]);
-        let wanted =
-            format!("carom study cases/spring.toml --vary mesh.refine=0,1 --vary {expected}");
+        let wanted = format!("carom study spring.toml --vary mesh.refine=0,1 --vary {expected}");
         assert_eq!(command, wanted);
         for axis in command.split(" --vary ").skip(1) {
             Axis::read(axis).unwrap();
@@ -124,6 +123,6 @@ fn the_study_that_a_verdict_names_varies_the_mesh_and_the_step_of_its_case() {
     );
     assert_eq!(
         command,
-        "carom study cases/spring.toml --vary mesh.refine=1,2 --vary time.step=0.05,0.025 --set 'body.bar.initial.velocity=[-0.02]'"
+        "carom study spring.toml --vary mesh.refine=1,2 --vary time.step=0.05,0.025 --set 'body.bar.initial.velocity=[-0.02]'"
     );
 }
