@@ -94,3 +94,8 @@ pub(crate) fn failed(error: &dyn StdError) -> PyErr {
     }
     RunError::new_err(text)
 }
+
+/// A `ValueError`.
+pub(crate) fn wrong(message: impl Into<String>) -> PyErr {
+    PyValueError::new_err(message.into())
+}

@@ -16,10 +16,9 @@ use carom_laws::{Law, Status};
 use carom_nonsmooth::coulomb::{Coulomb, Slip};
 use carom_nonsmooth::interface::{Candidate, Interface};
 use carom_schemes::{LaursenChawla, Row, Scheme, StepMap, TimeScheme};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::errors::failed;
+use crate::errors::{failed, wrong};
 use crate::schemes::{read_law, read_scheme};
 use of_mass::OfMass;
 use rows::Rows;
@@ -104,10 +103,6 @@ pub(crate) struct MatrixRun {
     motion: Motion,
     step: u64,
     room: Room,
-}
-
-fn wrong(message: impl Into<String>) -> PyErr {
-    PyValueError::new_err(message.into())
 }
 
 /// The velocity that damping acts on: that of the instant of the internal forces, or of an explicit step the one known before the forces.

@@ -3,7 +3,7 @@
 use carom_algebra::solver::Cholesky;
 use pyo3::prelude::*;
 
-use super::wrong;
+use crate::errors::wrong;
 
 /// Rows with their unknowns and coefficients, all of a point one after another.
 pub(super) struct Rows {

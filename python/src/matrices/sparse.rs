@@ -4,7 +4,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use pyo3::prelude::*;
 
-use super::wrong;
+use crate::errors::wrong;
 
 /// Pointers, columns and values of a matrix by rows.
 pub(super) type GivenMatrix = (Vec<usize>, Vec<u32>, Vec<f64>);

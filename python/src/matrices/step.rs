@@ -8,8 +8,8 @@ use carom_nonsmooth::interface::Candidate;
 use carom_schemes::{Known, Row, StepMap};
 use pyo3::prelude::*;
 
-use super::{Condensed, MatrixRun, Motion, damping_rate, wrong};
-use crate::errors::failed;
+use super::{Condensed, MatrixRun, Motion, damping_rate};
+use crate::errors::{failed, wrong};
 
 /// Defect of friction over the largest force, with which it is taken where none nearer is found: that of cases.
 const TOLERANCE: f64 = 1e-10;
