@@ -258,20 +258,7 @@ fn a_study_gives_orders_with_error_bars_and_a_figure() {
 fn a_fit_prints_the_value_that_it_found() {
     let work = tempfile::tempdir().unwrap();
     case(work.path());
-    let fit = |goal: &str| {
-        let key = "time.scheme.theta.theta";
-        let arguments = [
-            "study",
-            "case.toml",
-            "--fit",
-            key,
-            "--between",
-            "0.5,1",
-            "--to",
-            goal,
-        ];
-        carom(work.path(), &arguments)
-    };
+    let fit = |goal: &str| fitted(work.path(), goal);
     let output = fit("restitution=0.92");
     let said = text(&output);
     assert_eq!(output.status.code(), Some(0), "{said}");
@@ -293,6 +280,22 @@ fn a_fit_prints_the_value_that_it_found() {
     assert_eq!(fit("rest=0.1").status.code(), Some(2));
 }
 
+/// Fits the parameter of the theta scheme of the case in a folder.
+fn fitted(work: &std::path::Path, goal: &str) -> std::process::Output {
+    let key = "time.scheme.theta.theta";
+    let arguments = [
+        "study",
+        "case.toml",
+        "--fit",
+        key,
+        "--between",
+        "0.5,1",
+        "--to",
+        goal,
+    ];
+    carom(work, &arguments)
+}
+
 /// The `fit.json` of the case in a folder.
 fn written(work: &std::path::Path) -> serde_json::Value {
     let text = fs::read_to_string(work.join("case.study/fit.json")).unwrap();
@@ -304,7 +307,6 @@ fn written(work: &std::path::Path) -> serde_json::Value {
 fn a_fit_to_a_history_finds_the_run_that_made_it() {
     let work = tempfile::tempdir().unwrap();
     case(work.path());
-    let key = "time.scheme.theta.theta";
     let one = [
         "run",
         "case.toml",
@@ -314,18 +316,7 @@ fn a_fit_to_a_history_finds_the_run_that_made_it() {
         "made",
     ];
     assert_eq!(carom(work.path(), &one).status.code(), Some(0));
-    let to = "force=made/histories.csv";
-    let arguments = [
-        "study",
-        "case.toml",
-        "--fit",
-        key,
-        "--between",
-        "0.5,1",
-        "--to",
-        to,
-    ];
-    let output = carom(work.path(), &arguments);
+    let output = fitted(work.path(), "force=made/histories.csv");
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let found = written(work.path());
     // a thousandth of the range
