@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Side, Velocity};
-use carom_contact::{Initial, Integration, Law, Sliding};
+use carom_contact::{Contact, Initial, Integration, Law, Sliding, Target};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
@@ -153,7 +153,12 @@ impl Builder<'_> {
             let zone = self.plan.zone_of(secondary);
             let parts = zone.map_or(1, |zone| self.plan.zones[zone].substeps);
             let dt = system.dt / f64::from(parts);
-            let element = system.bodies[secondary].smallest_size();
+            let smallest = system.bodies[secondary].smallest_size();
+            let thick = distance_of_middles(&system.contacts[k]);
+            let (element, what) = match thick < smallest {
+                true => (thick, "distance of the middles that touch"),
+                false => (smallest, "smallest element"),
+            };
             // both sides at the speed of the fastest node: most cases need no pairing to tell
             if !system.contacts[k].moves() && 2.0 * fastest * dt <= element {
                 continue;
@@ -162,7 +167,7 @@ impl Builder<'_> {
             let way = approach(system, &accelerations, (k, start)).speed * dt;
             if way > element {
                 self.warnings.push(format!(
-                    "contact `{}`: in a step its sides approach by {way:.4e} m, more than the smallest element of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
+                    "contact `{}`: in a step its sides approach by {way:.4e} m, more than the {what} of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
                     system.contacts[k].name,
                     system.bodies[secondary].name(),
                     system.dt * element / way
@@ -329,6 +334,19 @@ impl Builder<'_> {
             }
         }
     }
+}
+
+/// How far apart middles are whose surfaces touch, m: a point that crosses that of the primary side in a step is on its other side, and was never inside. Infinite where the primary
+/// side is no middle.
+fn distance_of_middles(contact: &Contact) -> f64 {
+    let faces = match &contact.target {
+        Target::Surface(faces) => &faces[..],
+        Target::Rigid(_) => &[],
+    };
+    let round = faces.iter().filter(|face| face.is_round());
+    let other = round.filter_map(|face| face.radius);
+    let own = contact.points.iter().map(|point| point.radius);
+    own.fold(0.0, f64::max) + other.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// The section of a bar (m²) or the thickness of a plane body (m) on both sides of a contact; none on an obstacle, and where

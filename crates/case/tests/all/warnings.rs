@@ -322,3 +322,31 @@ fn a_beam_in_a_solid_to_which_nothing_joins_it_is_told() {
         assert!(!joins, "{joint}: {told:?}");
     }
 }
+
+/// Beams of 20 mm fly at each other with 20 m/s: in a step of more than 1 ms their middles can pass each other unseen.
+#[test]
+fn a_step_in_which_middles_may_pass_each_other_is_told() {
+    let told = |step: &str| {
+        let text = format!(
+            r#"
+carom = 1
+mesh.generate.a.line = {{ from = [0.0, 0.0], to = [1.0, 0.0], elements = 8 }}
+mesh.generate.b.line = {{ from = [0.1, 0.1], to = [0.9, 0.1], elements = 5 }}
+material.m = {{ density = 7800.0, elastic = {{ young = "210 GPa", poisson = 0.3 }} }}
+body.a = {{ region = "a", material = "m", section.beam.shape.circle.diameter = "2 cm" }}
+body.b = {{ region = "b", material = "m", section.beam.shape.circle.diameter = "2 cm", initial.velocity = [0.0, -20.0] }}
+contact.both = {{ secondary = "b", primary = "a", integration = "mortar", law.velocity = {{}} }}
+time = {{ end = "12 ms", step = "{step}", scheme.theta = {{}} }}
+"#
+        );
+        let input = Input::from_text("case.toml", &text, &[]);
+        let (case, locator) = parse(&input).unwrap();
+        build(&case, &locator, &input).unwrap().warnings
+    };
+    assert_eq!(told("0.9 ms"), Vec::<String>::new());
+    let found = told("4 ms");
+    // 80 mm in a step, 20 mm between the middles: at most 1 ms
+    let passes =
+        |told: &String| told.contains("distance of the middles") && told.contains("1.0000e-3 s");
+    assert!(found.iter().any(passes), "{found:?}");
+}
