@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::impact::{Given, Impact, NoRestitution, OpenImpact};
 use crate::report::ContactReport;
-use crate::small::Smallness;
+use crate::small::{Largest, Smallness};
 use crate::step_map::Impulse;
 use crate::sum::Sum;
 use crate::system::System;
@@ -47,6 +47,9 @@ pub struct ContactRecord {
     pub loose_closings: u64,
     /// Largest penetration at the end of a step, m.
     pub penetration: f64,
+    /// Largest depth of a point behind the plane that it faced in a step, at its start or at its end, m; by the node of the point. Where it
+    /// passed what it faced that is the depth of its start, seen from the far side. Of sides that are paired anew.
+    pub passing: Largest,
     /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
     pub energy_crushed: f64,
     /// Energy that friction has taken so far, J.

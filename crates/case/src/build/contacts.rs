@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Side, Velocity};
-use carom_contact::{Contact, Initial, Integration, Law, Sliding, Target};
+use carom_contact::{Initial, Integration, Law, Sliding};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
@@ -154,7 +154,8 @@ impl Builder<'_> {
             let parts = zone.map_or(1, |zone| self.plan.zones[zone].substeps);
             let dt = system.dt / f64::from(parts);
             let smallest = system.bodies[secondary].smallest_size();
-            let thick = distance_of_middles(&system.contacts[k]);
+            let middles = system.contacts[k].distance_of_middles();
+            let thick = middles.unwrap_or(f64::INFINITY);
             let (element, what) = match thick < smallest {
                 true => (thick, "distance of the middles that touch"),
                 false => (smallest, "smallest element"),
@@ -334,19 +335,6 @@ impl Builder<'_> {
             }
         }
     }
-}
-
-/// How far apart middles are whose surfaces touch, m: a point that crosses that of the primary side in a step is on its other side, and was never inside. Infinite where the primary
-/// side is no middle.
-fn distance_of_middles(contact: &Contact) -> f64 {
-    let faces = match &contact.target {
-        Target::Surface(faces) => &faces[..],
-        Target::Rigid(_) => &[],
-    };
-    let round = faces.iter().filter(|face| face.is_round());
-    let other = round.filter_map(|face| face.radius);
-    let own = contact.points.iter().map(|point| point.radius);
-    own.fold(0.0, f64::max) + other.reduce(f64::max).unwrap_or(f64::INFINITY)
 }
 
 /// The section of a bar (m²) or the thickness of a plane body (m) on both sides of a contact; none on an obstacle, and where

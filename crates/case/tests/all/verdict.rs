@@ -192,6 +192,58 @@ sliding = "finite"
     assert_eq!(grade(&summary, "penetration"), Grade::Bad, "{depth}");
 }
 
+/// Two bodies, one above the other, of which the upper one comes down with 20 m/s, from 0.1 m between their middles.
+fn crossing(bodies: &str, contact: &str, step: &str) -> Summary {
+    let text = format!(
+        r#"
+carom = 1
+{bodies}
+material.m = {{ density = 7800.0, elastic = {{ young = "210 GPa", poisson = 0.3 }} }}
+{contact}
+time = {{ end = "12 ms", step = "{step}", scheme.theta = {{}} }}
+"#
+    );
+    result(&text).0
+}
+
+/// Bodies that cross within a step of 80 mm never close, and nothing but the crossing tells of it.
+#[test]
+fn bodies_that_pass_each_other_within_a_step_are_bad() {
+    let beams = r#"
+mesh.generate.a.line = { from = [0.0, 0.0], to = [1.0, 0.0], elements = 8 }
+mesh.generate.b.line = { from = [0.1, 0.1], to = [0.9, 0.1], elements = 5 }
+body.a = { region = "a", material = "m", section.beam.shape.circle.diameter = "2 cm" }
+body.b = { region = "b", material = "m", section.beam.shape.circle.diameter = "2 cm", initial.velocity = [0.0, -20.0] }
+"#;
+    let plates = r#"
+mesh.generate.a.rectangle = { origin = [0.0, 0.0], size = [1.0, 0.02], elements = [50, 2] }
+mesh.generate.b.rectangle = { origin = [0.1, 0.1], size = [0.8, 0.02], elements = [40, 2] }
+body.a = { region = "a", material = "m", section.plane-strain.thickness = 1.0 }
+body.b = { region = "b", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [0.0, -20.0] }
+"#;
+    let both = |more: &str| {
+        format!(
+            r#"contact.both = {{ secondary = "b", primary = "a", {more}, law.velocity = {{}} }}"#
+        )
+    };
+    let [mortar, nodes] =
+        ["integration = \"mortar\"", "sliding = \"finite\""].map(|more| both(more));
+    let all = "general-contact = { law.velocity = {} }";
+    for (bodies, contact) in [(beams, &*mortar), (beams, &*nodes), (plates, all)] {
+        let summary = crossing(bodies, contact, "4 ms");
+        let impulses = |summary: &Summary| -> f64 {
+            let contacts = summary.contacts.values();
+            contacts.filter_map(|contact| contact.impulse).sum()
+        };
+        assert_eq!(impulses(&summary), 0.0);
+        // the middles are 0.1 m apart at the start, and 0.02 m where surfaces touch
+        assert_eq!(grade(&summary, "passing"), Grade::Bad);
+        let summary = crossing(bodies, contact, "0.25 ms");
+        assert!(impulses(&summary) > 0.0);
+        assert_eq!(grade(&summary, "passing"), Grade::Good);
+    }
+}
+
 /// One free bar of 24 m that a push of 120 us at its end sets in motion, at `critical` of the critical step. Only with a load in
 /// time is the run not linear.
 fn pulse(critical: f64) -> Summary {

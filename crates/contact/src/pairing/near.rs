@@ -214,6 +214,31 @@ impl Contact {
         self.sight.as_ref().map(Sight::deepest)
     }
 
+    /// Distance of the middles of thin bodies whose surfaces touch, m: a point that crosses that of the other side in a step is on
+    /// its far side, and was never inside. `None` where the other side is no middle.
+    pub fn distance_of_middles(&self) -> Option<f64> {
+        let faces = match &self.target {
+            Target::Surface(faces) => &faces[..],
+            Target::Rigid(_) => &[],
+        };
+        let round = faces.iter().filter(|face| face.is_round());
+        let other = round.filter_map(|face| face.radius).reduce(f64::max)?;
+        let own = self.points.iter().map(|point| point.radius);
+        Some(own.fold(0.0, f64::max) + other)
+    }
+
+    /// Whether points can get behind the other side so far that they are not pushed back: neither those of obstacles nor those that keep their
+    /// faces.
+    pub fn may_be_passed(&self) -> bool {
+        self.sliding == Sliding::Finite && matches!(self.target, Target::Surface(_))
+    }
+
+    /// How deep a point may be behind the other side and still be pushed back, m; `None` for any depth.
+    pub fn depth_of_hold(&self) -> Option<f64> {
+        let middles = || self.distance_of_middles().or_else(|| self.deepest());
+        self.may_be_passed().then(middles).flatten()
+    }
+
     /// The most that a point or a face is thick beyond its place, less what is added to gaps, m.
     pub fn thickest(&self) -> f64 {
         let points = self.points.iter().enumerate();

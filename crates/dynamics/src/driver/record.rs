@@ -8,6 +8,7 @@ use super::Driver;
 use crate::exchange::sum;
 use crate::moment::moment;
 use crate::records::Step;
+use crate::small::Largest;
 use crate::report::ContactReport;
 use crate::state::{InterfaceState, State};
 use crate::step_map::Impulse;
@@ -55,6 +56,7 @@ impl Driver {
             };
             report.impulsive = points().map(carried_on).sum();
             let span = [self.state.time, self.next.time];
+            let passing = self.passing(k);
             let State {
                 motion,
                 records,
@@ -80,6 +82,7 @@ impl Driver {
             };
             let velocities = [&self.state.motion.v[..], &motion.v];
             records.add(&system, k, &step, velocities);
+            records.contacts[k].passing = passing;
             records.contacts[k].pushed = pushed;
             self.report.contacts[k] = report;
         }
@@ -90,6 +93,29 @@ impl Driver {
         }
         let state = &mut self.next;
         self.watch.look_alone(&system, self.state.step + 1, state);
+    }
+
+    /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
+    fn passing(&self, number: usize) -> Largest {
+        let system = &*self.system;
+        let mut passing = self.next.records.contacts[number].passing;
+        let contact = &system.contacts[number];
+        if !contact.may_be_passed() {
+            return passing;
+        }
+        let (rows, interface) = (&self.pairing.rows, &self.next.interface);
+        let [old, new] = [&self.state.motion.u, &self.next.motion.u];
+        for point in self.active.within(system.points_of(number)) {
+            let end = interface.gap[point];
+            let start = end - (rows.product(point, new) - rows.product(point, old));
+            let depth = -end.min(start);
+            if depth > passing.value {
+                let point = &contact.points[point - system.first_point[number]];
+                let node = system.mesh_node[point.node() as usize];
+                passing.take(depth, node, self.next.time);
+            }
+        }
+        passing
     }
 
     /// Moment of a contact in the step, about the point that it names, N m; zero where it names none.

@@ -37,6 +37,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     explicit::loose_nodes,
     chatter::of_contacts,
     penetration::of_contacts,
+    penetration::of_passing,
     resolution::of_peaks,
     resolution::of_impulses,
     exact::force,
