@@ -37,6 +37,11 @@ impl Fingerprint {
             .fold(begun, |print, number| print.bytes(&number.to_le_bytes()))
     }
 
+    /// The upper and the lower 32 bits.
+    pub fn halves(self) -> [u32; 2] {
+        [(self.0 >> 32) as u32, self.0 as u32]
+    }
+
     /// 16 hexadecimal digits.
     pub fn digits(self) -> String {
         format!("{:016x}", self.0)

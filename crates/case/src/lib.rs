@@ -49,7 +49,7 @@ pub use mesh_facts::mesh_facts;
 pub use modes::{Modal, ModesError, modes};
 pub use offenders::Offenders;
 pub use parse::parse;
-pub use ranks::{refused_on_ranks, run_on_ranks};
+pub use ranks::{run_on_ranks, whole_on_ranks};
 pub use reference::reference_page;
 pub use resume::{NotResumed, Resume};
 pub use run::{Failed, Finished, run};

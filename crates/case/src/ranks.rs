@@ -4,12 +4,11 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Costs, Error, Observer, OnRanks, RankShare, march, why_not_on_ranks};
+use carom_dynamics::{Alike, Costs, Error, Observer, Outcome, RankShare, march, why_not_on_ranks};
 use carom_output::{Results, Settings, watched};
 use carom_ranks::Ranks;
 
 use crate::build::Built;
-use crate::error::Problem;
 use crate::input::Input;
 use crate::origin::Origin;
 use crate::run::{Failed, Finished, March, conclude, settings};
@@ -48,7 +47,7 @@ pub(crate) fn shared(
         Ok((run, nodes))
     });
     let (mut run, nodes) = together(ranks, begun, Failed::Start)?;
-    run.share(ranks, &nodes).map_err(Failed::Start)?;
+    run.share(ranks, &nodes);
     Ok(run)
 }
 
@@ -65,12 +64,12 @@ pub(crate) fn go_through(
         false => Ok(None),
     };
     let Some(mut results) = together(ranks, results, Failed::Output)? else {
-        let outcome = march(run.get_mut(), built.end, &mut [], &|| false);
+        let outcome = take((ranks, &mut run), march, built.end, (&mut [], &|| false));
         busiest(ranks, &run);
         return outcome.map(|_| None).map_err(Failed::Step);
     };
     let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
-    let outcome = march(run.get_mut(), built.end, observers, stop);
+    let outcome = take((ranks, &mut run), march, built.end, (observers, stop));
     let share = busiest(ranks, &run);
     let zones = run.zones(built);
     let finished = conclude((results, outcome), (run.get(), zones), (now, built.end))?;
@@ -80,6 +79,19 @@ pub(crate) fn go_through(
     }))
 }
 
+/// Takes the steps: of a run whose elements ranks do not share each rank takes all.
+fn take(
+    (ranks, run): (&Ranks, &mut Stepping),
+    march: March,
+    end: f64,
+    (observers, stop): (&mut [&mut dyn Observer], &dyn Fn() -> bool),
+) -> Result<Outcome, Error> {
+    match run.rank_share() {
+        Some(_) => march(run.get_mut(), end, observers, stop),
+        None => march(&mut Alike::new(run.get_mut(), ranks), end, observers, stop),
+    }
+}
+
 /// The most that a rank has and sends.
 fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
     let own = run.rank_share().unwrap_or_default();
@@ -87,7 +99,7 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
         own.elements as u64,
         own.nodes as u64,
         own.halo_bytes,
-        own.sent_bytes,
+        ranks.sent_bytes(),
     ];
     let mut most = counts.map(|count| count as f64);
     ranks.reduce(&mut [], &mut most);
@@ -113,29 +125,13 @@ fn together<T, E: std::error::Error>(
     }
 }
 
-/// What of a case several ranks do not take, if anything.
-pub fn refused_on_ranks(case: &Case, built: &Built) -> Option<Problem> {
-    let one = "one process, with as many threads as the machine has";
-    if built.zoned.is_some() {
-        let problem = Problem::new("zone", "several ranks take no zones");
-        return Some(problem.accepted([one]));
-    }
-    let why = why_not_on_ranks(&built.system)?;
-    let path = match &why {
-        OnRanks::Scheme => "time.scheme".to_owned(),
-        OnRanks::StaticStage => "time.static".to_owned(),
-        OnRanks::Links => "tie".to_owned(),
-        OnRanks::Damping => match case.body.iter().find(|(_, body)| body.damping.is_some()) {
-            Some((name, _)) => format!("body.{name}.damping"),
-            None => "dashpot".to_owned(),
-        },
-        OnRanks::Body(name) | OnRanks::Share(name, _) => format!("body.{name}"),
-        OnRanks::Follower => "load".to_owned(),
-        OnRanks::Contact(name) => format!("contact.{name}"),
+/// What several ranks do not share of a case, in words; none if they share its elements.
+pub fn whole_on_ranks(built: &Built) -> Option<String> {
+    let why = match built.zoned {
+        Some(_) => "zones".to_owned(),
+        None => why_not_on_ranks(&built.system)?.to_string(),
     };
-    let problem = Problem::new(path, format!("several ranks take no {why}"));
-    Some(match why {
-        OnRanks::Scheme => problem.accepted(["central-difference", one]),
-        _ => problem.accepted([one]),
-    })
+    Some(format!(
+        "each rank computes all elements and contacts: ranks share none with {why}; where `time.solver` is iterative they share its products"
+    ))
 }

@@ -14,7 +14,7 @@ use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::origin::Origin;
 use crate::parse::parse;
-use crate::ranks::{go_through, refused_on_ranks, shared};
+use crate::ranks::{go_through, shared};
 use crate::run::{Begin, Failed, Finished, comments, march_from, settings};
 use crate::schema::Case;
 
@@ -194,12 +194,5 @@ impl Resume {
             results,
             (progress, stop),
         )
-    }
-
-    /// What of the case several ranks do not take, at its place.
-    pub fn refused_on_ranks(&self) -> Option<(Vec<Source>, Problem)> {
-        let (_, locator) = parse(&self.input).ok()?;
-        let problem = refused_on_ranks(&self.case, &self.built)?;
-        Some((self.input.sources.clone(), locator.locate(problem)))
     }
 }

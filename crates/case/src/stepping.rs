@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_dynamics::{Costs, Driver, Error, OnRanks, RankShare, State, Stepper};
+use carom_dynamics::{Costs, Driver, Error, RankShare, State, Stepper};
 use carom_output::summary::Zones;
 use carom_ranks::Ranks;
 use carom_zones::Whole;
@@ -40,15 +40,11 @@ impl Stepping {
     }
 
     /// Shares the run with other ranks; `watched`: nodes whose motion the first rank follows.
-    ///
-    /// # Errors
-    /// A model that several ranks do not take.
-    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
+    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &[u32]) {
         match self {
             Stepping::One(driver) => driver.share(ranks, watched),
-            Stepping::Apart(_) => Err(Error::NotOnRanks {
-                why: OnRanks::Scheme,
-            }),
+            // zones that step apart have factors, which ranks do not share
+            Stepping::Apart(_) => {}
         }
     }
 

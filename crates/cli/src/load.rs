@@ -15,21 +15,12 @@ pub fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::C
     load_with(case, set, |_| Ok(()))
 }
 
-/// As [`load`], for several ranks if there are: what they do not take is a problem too.
-pub fn load_for(
-    ranks: &Ranks,
-    case: &Path,
-    set: &[String],
-) -> Result<(Input, carom_case::schema::Case, Built), u8> {
-    let (input, parsed, built) = load(case, set)?;
-    if ranks.count() > 1
-        && let Some(problem) = carom_case::refused_on_ranks(&parsed, &built)
-    {
-        let located = carom_case::parse(&input).map(|(_, locator)| locator.locate(problem));
-        let problems = located.map_or_else(|problems| problems, |problem| vec![problem]);
-        return Err(refuse(&input.sources, &problems));
+/// Warns of what several ranks do not share.
+pub fn warn_of_ranks(ranks: &Ranks, built: &Built) {
+    let whole = carom_case::whole_on_ranks(built);
+    if let Some(whole) = whole.filter(|_| ranks.count() > 1) {
+        err!("warning: {whole}");
     }
-    Ok((input, parsed, built))
 }
 
 /// As [`load`]; `keep` sees the problems after they are printed.

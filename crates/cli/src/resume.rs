@@ -8,7 +8,7 @@ use carom_output::plot::quantity;
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD_INPUT, FAILED};
-use crate::load::refuse;
+use crate::load::{refuse, warn_of_ranks};
 use crate::ranks::all_have;
 use crate::run::{end, until_stopped};
 use crate::terminal::{err, line};
@@ -57,11 +57,7 @@ fn open_on(ranks: &Ranks, folder: &Path, overrides: &[String]) -> Result<Resume,
         true => open(folder, overrides)?,
         false => Resume::open_beside(folder, overrides).map_err(|_| BAD_INPUT)?,
     };
-    if ranks.count() > 1
-        && let Some((sources, problem)) = run.refused_on_ranks()
-    {
-        return Err(refuse(&sources, &[problem]));
-    }
+    warn_of_ranks(ranks, &run.built);
     Ok(run)
 }
 

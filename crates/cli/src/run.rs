@@ -14,7 +14,7 @@ use carom_output::{Grade, Level, Summary};
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
-use crate::load::load_for;
+use crate::load::{load, warn_of_ranks};
 use crate::progress::Progress;
 use crate::ranks::all_have;
 use crate::terminal::{err, line, out};
@@ -40,7 +40,7 @@ pub struct Arguments {
 
 /// Runs a case; returns the exit code.
 pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
-    let loaded = load_for(ranks, &arguments.case, &arguments.set);
+    let loaded = load(&arguments.case, &arguments.set);
     let (input, case, built) = match all_have(ranks, loaded) {
         Ok(loaded) => loaded,
         Err(code) => return code,
@@ -48,6 +48,7 @@ pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
     for warning in &built.warnings {
         err!("warning: {}", line(warning));
     }
+    warn_of_ranks(ranks, &built);
     for (body, told) in &built.reductions {
         err!("{}", line(&format!("reduction of {body}: {told}")));
     }
@@ -239,6 +240,9 @@ fn busiest(share: &RankShare) -> String {
         halo_bytes,
         sent_bytes,
     } = share;
+    if *elements == 0 {
+        return format!("ranks: {:.3} MB sent by each", *sent_bytes as f64 / 1e6);
+    }
     format!(
         "ranks: at most {elements} elements and {nodes} nodes each, {halo_bytes} bytes sent a step and {:.3} MB in all",
         *sent_bytes as f64 / 1e6

@@ -6,6 +6,7 @@ use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::{Cholesky, Iterative, Ordering};
 use carom_contact::{Pairing, Search};
+use carom_ranks::Ranks;
 
 use crate::error::Error;
 use crate::iterated::Iterated;
@@ -48,6 +49,8 @@ pub(crate) struct Use<'a> {
     pub(crate) stays: bool,
     /// Whether the matrix has a mass: without, iterations grow with the mesh.
     pub(crate) inertia: bool,
+    /// Who shares the products of iterations.
+    pub(crate) ranks: &'a Ranks,
 }
 
 /// An operator of a symmetric positive definite matrix; unknowns marked `fixed` are taken out. `nodes`: node of each unknown.
@@ -69,7 +72,7 @@ pub(crate) fn operator(
         Solver::Auto => Some(Ordering::new(&matrix, &groups)?),
         Solver::Direct | Solver::Iterative => None,
     };
-    let mut solver = Box::new(Iterative::new(matrix, &groups)?);
+    let mut solver = Box::new(Iterative::new(matrix, &groups)?.on(of.ranks));
     match order {
         Some(order) if !pays(&mut solver, (system, of), order.work()) => {
             factor(solver.matrix(), order)

@@ -2,7 +2,6 @@
 
 use thiserror::Error as ThisError;
 
-use crate::on_ranks::OnRanks;
 
 /// Errors of this crate.
 #[derive(Debug, ThisError)]
@@ -194,12 +193,6 @@ pub enum Error {
         /// The motion.
         motion: String,
     },
-    /// A model that several ranks do not take.
-    #[error("several ranks take no {why}; run it in one process")]
-    NotOnRanks {
-        /// What they do not take.
-        why: OnRanks,
-    },
     /// A step failed on one of several ranks, and so on all.
     #[error("rank {rank}: {cause}")]
     OnRank {
@@ -207,6 +200,14 @@ pub enum Error {
         rank: usize,
         /// Its error, in words.
         cause: String,
+    },
+    /// Ranks that take the same steps have come to different motions.
+    #[error(
+        "ranks have come to different motions at {time:e} s: they must run the same program on processors of one kind"
+    )]
+    RanksDiffer {
+        /// End of the step, s.
+        time: f64,
     },
     /// The first rank ended the run: its results could not be written.
     #[error("rank 0 could not write the results")]

@@ -4,6 +4,7 @@
 //! [`Driver`] owns factors and scratch. [`march`] is the loop; observers see accepted states only. No files, no
 //! printing.
 
+mod alike;
 mod blocks;
 mod choice;
 mod columns;
@@ -38,6 +39,7 @@ mod update;
 mod watch;
 
 use carom_nonsmooth::{coulomb, interface};
+pub use alike::Alike;
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;
 use carom_system as system;

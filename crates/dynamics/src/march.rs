@@ -1,5 +1,6 @@
 //! The loop over the steps.
 
+use carom_ranks::Ranks;
 use serde::Serialize;
 
 use crate::costs::Costs;
@@ -51,6 +52,19 @@ pub enum Going {
     Stopped,
     /// Its results could not be written.
     Failed,
+}
+
+impl Going {
+    /// What the first rank says. All ask together.
+    pub(crate) fn of_first(self, ranks: &Ranks) -> Going {
+        let mut said = vec![f64::from(self as u8)];
+        ranks.broadcast(&mut said);
+        match said[0] as u8 {
+            0 => Going::On,
+            1 => Going::Stopped,
+            _ => Going::Failed,
+        }
+    }
 }
 
 /// The contact problem of a step that failed.

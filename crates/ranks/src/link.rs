@@ -23,6 +23,8 @@ pub(crate) trait Link: Send + Sync {
     fn reduce(&self, sums: &mut [f64], largest: &mut [f64]);
     /// Gives what the first rank has to all others.
     fn broadcast(&self, values: &mut Vec<f64>);
+    /// Gives each rank's own part of some numbers to all others; `starts`: where the parts begin, and their end.
+    fn gather(&self, values: &mut [f64], starts: &[usize]);
 }
 
 /// The ranks of a run as one of them sees them.
@@ -113,6 +115,22 @@ impl Ranks {
         if let Some(link) = &self.link {
             link.broadcast(values);
         }
+    }
+
+    /// Where the parts of `count` things begin that ranks share in their order, and their end.
+    pub fn starts(&self, count: usize) -> Vec<usize> {
+        let ranks = self.count();
+        (0..=ranks).map(|rank| count * rank / ranks).collect()
+    }
+
+    /// Gives each rank's own part of some numbers to all others; `starts`: where the parts begin, and their end.
+    pub fn gather(&self, values: &mut [f64], starts: &[usize]) {
+        let Some(link) = &self.link else { return };
+        let [rank, count] = self.place();
+        let own = starts[rank + 1] - starts[rank];
+        let sent = own * (count - 1);
+        self.sent.fetch_add(sent as u64, Ordering::Relaxed);
+        link.gather(values, starts);
     }
 
     /// The text of the first rank that has one, with that rank; none if none has. All ranks ask together.

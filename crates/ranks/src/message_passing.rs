@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use mpi::Threading;
 use mpi::collective::SystemOperation;
+use mpi::datatype::PartitionMut;
 use mpi::environment::Universe;
 use mpi::request::multiple_scope;
 use mpi::topology::SimpleCommunicator;
@@ -93,5 +94,16 @@ impl Link for World {
         first.broadcast_into(&mut length);
         values.resize(length as usize, 0.0);
         first.broadcast_into(&mut values[..]);
+    }
+
+    fn gather(&self, values: &mut [f64], starts: &[usize]) {
+        let world = SimpleCommunicator::world();
+        let own = number(world.rank());
+        let own = values[starts[own]..starts[own + 1]].to_vec();
+        let places: Vec<i32> = starts.iter().map(|start| *start as i32).collect();
+        let counts: Vec<i32> = places.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let ranks = counts.len();
+        let mut parts = PartitionMut::new(values, counts, &places[..ranks]);
+        world.all_gather_varcount_into(&own[..], &mut parts);
     }
 }

@@ -103,6 +103,16 @@ impl Link for Threads {
             *values = self.receive(0);
         }
     }
+
+    fn gather(&self, values: &mut [f64], starts: &[usize]) {
+        let part = |rank: usize| starts[rank]..starts[rank + 1];
+        for to in (0..self.to.len()).filter(|to| *to != self.rank) {
+            self.send(to, values[part(self.rank)].to_vec());
+        }
+        for from in (0..self.to.len()).filter(|from| *from != self.rank) {
+            values[part(from)].copy_from_slice(&self.receive(from));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -138,6 +148,19 @@ mod tests {
         for one in found {
             assert_eq!(one, (None, Some((2, "of 2".to_owned()))));
         }
+    }
+
+    #[test]
+    fn parts_of_all_ranks_reach_each() {
+        let found = on_all(3, |ranks| {
+            let starts = ranks.starts(7);
+            let mut values = [-1.0; 7];
+            let own = starts[ranks.rank()]..starts[ranks.rank() + 1];
+            own.for_each(|k| values[k] = k as f64);
+            ranks.gather(&mut values, &starts);
+            values
+        });
+        assert_eq!(found, [[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]; 3]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! element, whatever the number of unknowns: iterations do not grow with the mesh at a given Courant number. No factor, no memory
 //! beyond the matrix and some vectors.
 
+use carom_ranks::Ranks;
 use rayon::prelude::*;
 
 use crate::dense::DenseCholesky;
@@ -35,6 +36,9 @@ pub struct Iterative {
     best: Vec<f64>,
     /// Products with the matrix so far.
     products: usize,
+    /// Who shares the rows of products, and where the parts of each begin.
+    ranks: Ranks,
+    parts: Vec<usize>,
 }
 
 impl Iterative {
@@ -62,10 +66,20 @@ impl Iterative {
             image: vec![0.0; matrix.n],
             best: vec![0.0; matrix.n],
             products: 0,
+            ranks: Ranks::alone(),
+            parts: vec![0, matrix.n],
             matrix,
         };
         solver.invert()?;
         Ok(solver)
+    }
+
+    /// Shares the rows of products with other ranks, which all have the matrix: each multiplies its own and is given the others.
+    #[must_use]
+    pub fn on(mut self, ranks: &Ranks) -> Self {
+        self.parts = ranks.starts(self.matrix.n);
+        self.ranks = ranks.clone();
+        self
     }
 
     /// Takes another matrix with the same unknowns.
@@ -115,14 +129,16 @@ impl Iterative {
         self.matrix.n
     }
 
-    /// y = A x. Threads share the rows; an entry has the same bits on any number of them.
+    /// y = A x. Threads and ranks share the rows; an entry has the same bits on any number of them.
     pub fn multiply(&mut self, x: &[f64], y: &mut [f64]) {
         self.products += 1;
         let matrix = &self.matrix;
-        let chunks = y[..matrix.n].par_chunks_mut(CHUNK).enumerate();
+        let rank = self.ranks.rank();
+        let [first, end] = [self.parts[rank], self.parts[rank + 1]];
+        let chunks = y[first..end].par_chunks_mut(CHUNK).enumerate();
         chunks.for_each(|(k, chunk)| {
             for (i, y) in chunk.iter_mut().enumerate() {
-                let (columns, values) = matrix.row(k * CHUNK + i);
+                let (columns, values) = matrix.row(first + k * CHUNK + i);
                 let mut sum = 0.0;
                 for (&j, a) in columns.iter().zip(values) {
                     sum += a * x[j as usize];
@@ -130,6 +146,7 @@ impl Iterative {
                 *y = sum;
             }
         });
+        self.ranks.gather(&mut y[..matrix.n], &self.parts);
     }
 
     /// z = G⁻¹ r, with G the blocks on the diagonal.

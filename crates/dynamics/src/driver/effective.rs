@@ -11,6 +11,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::solver::FactorStats;
 use carom_contact::Pairing;
+use carom_ranks::Ranks;
 
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
@@ -49,6 +50,8 @@ pub(super) struct Effective {
     retired: Work,
     /// Scratch of the curvature.
     loads: Vec<f64>,
+    /// Who shares the products of iterations.
+    ranks: Ranks,
 }
 
 /// The matrices of one size of the step.
@@ -70,6 +73,8 @@ pub(super) struct Matrices {
     pub(super) matrix: Option<Csr>,
     /// The whole derivative of what bodies, inertia and loads give, without contact forces, not symmetric; none unless wanted.
     pub(super) whole: Option<Csr>,
+    /// Who shares the products of iterations.
+    pub(super) ranks: Ranks,
     /// Unknowns of the contact points whose curvature the pattern has room for, by group, one after the other.
     pub(super) coupled: Vec<Vec<Vec<u32>>>,
     /// Diagonals, by unknown.
@@ -122,7 +127,14 @@ impl Effective {
             made: 0,
             retired: Work::default(),
             loads: Vec::new(),
+            ranks: Ranks::alone(),
         }
+    }
+
+    /// Shares the products of iterations with others. Matrices at hand are made anew.
+    pub(super) fn share(&mut self, ranks: &Ranks) {
+        self.ranks = ranks.clone();
+        (self.now, self.kept) = (None, Vec::new());
     }
 
     /// Whether the matrices at hand are those of these maps.
@@ -159,7 +171,7 @@ impl Effective {
             Some(place) => self.kept.remove(place),
             None => {
                 self.made += 1;
-                Matrices::new(system, maps, iterated, (between, self.made))?
+                Matrices::new(system, maps, iterated, (between, self.made, &self.ranks))?
             }
         };
         if let Some(before) = self.now.replace(next) {
@@ -316,7 +328,7 @@ impl Matrices {
         system: &System,
         maps: &Maps,
         iterated: Vec<bool>,
-        (between, made): (bool, u64),
+        (between, made, ranks): (bool, u64, &Ranks),
     ) -> Result<Matrices, Error> {
         let (others, linear): (Vec<_>, Vec<_>) = single(iterated.len())
             .into_iter()
@@ -329,7 +341,7 @@ impl Matrices {
         for group in &mut operators.groups[..first] {
             let part = group.parts[0].clone();
             let map = maps.of(part.start);
-            let of = (map, between);
+            let of = (map, between, ranks);
             let operator = linear_part(system, &part, of, (&mut diagonal, &mut held))?;
             group.operator = Some(operator);
         }
@@ -364,6 +376,7 @@ impl Matrices {
             held,
             matrix: None,
             whole: None,
+            ranks: ranks.clone(),
             coupled,
             diagonal,
         })
@@ -379,7 +392,7 @@ impl Matrices {
 fn linear_part(
     system: &System,
     part: &Range<usize>,
-    (map, between): (&StepMap, bool),
+    (map, between, ranks): (&StepMap, bool, &Ranks),
     (diagonal, held): (&mut [f64], &mut HeldColumns),
 ) -> Result<Operator, Error> {
     let fixed = &system.fixed[part.clone()];
@@ -396,6 +409,7 @@ fn linear_part(
         part: Some(part),
         stays: true,
         inertia: map.inertia.x != 0.0,
+        ranks,
     };
     let operator = solvable((system, of), part, &a, fixed, "effective matrix")?;
     let columns = modal_columns(system, part, damping_rate(map).x);

@@ -31,21 +31,18 @@ pub struct RankShare {
 }
 
 impl Driver {
-    /// Shares the run, whose state all ranks have, with others. `watched`: nodes (system numbers) whose motion the first rank is to have
-    /// after each step; all ranks ask together.
-    ///
-    /// # Errors
-    /// [`Error::NotOnRanks`].
-    pub fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
+    /// Shares the run, whose state all ranks have, with others: the elements of explicit steps that can be shared
+    /// ([`why_not_on_ranks`](crate::why_not_on_ranks)); of others the products of iterations, while each rank takes all of the step
+    /// ([`Alike`](crate::Alike)). `watched`: nodes (system numbers) whose motion the first rank is to have after each step; all ranks ask
+    /// together.
+    pub fn share(&mut self, ranks: &Ranks, watched: &[u32]) {
         if ranks.count() == 1 {
-            return Ok(());
+            return;
         }
         let system = Arc::clone(&self.system);
-        if let Some(why) = super::unfit::why_not_on_ranks(&system) {
-            return Err(Error::NotOnRanks { why });
-        }
-        let Some(direct) = &mut self.direct else {
-            return Ok(());
+        let shares = super::unfit::why_not_on_ranks(&system).is_none();
+        let Some(direct) = self.direct.as_mut().filter(|_| shares) else {
+            return self.effective.share(ranks);
         };
         let elements = parts(&system, ranks.count());
         let shared = Shared::new(&system, ranks, (watched, elements));
@@ -53,7 +50,6 @@ impl Driver {
         direct.sums = vec![Sums::default(); direct.blocks.len()];
         self.shared = Some(Box::new(shared));
         self.several = true;
-        Ok(())
     }
 
     /// Whether several ranks take the steps.
@@ -175,15 +171,9 @@ impl Driver {
 
     /// See [`Stepper::agree`](crate::Stepper::agree).
     pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
-        let Some(shared) = &self.shared else {
-            return own;
-        };
-        let mut said = vec![f64::from(own as u8)];
-        shared.ranks.broadcast(&mut said);
-        match said[0] as u8 {
-            0 => Going::On,
-            1 => Going::Stopped,
-            _ => Going::Failed,
+        match &self.shared {
+            Some(shared) => own.of_first(&shared.ranks),
+            None => own,
         }
     }
 

@@ -114,6 +114,7 @@ impl Matrices {
                         part: None,
                         stays: false,
                         inertia: at.maps.all().iter().all(|map| map.inertia.x != 0.0),
+                        ranks: &self.ranks,
                     };
                     let none = vec![false; free.n];
                     let new = choice::operator((system, of), &free, &none, &nodes);
