@@ -63,4 +63,10 @@ pub enum Error {
         /// Unknown with the largest residual.
         unknown: usize,
     },
+    /// The engine of the ranks does not solve.
+    #[error("{cause}")]
+    Engine {
+        /// What it says.
+        cause: String,
+    },
 }

@@ -72,7 +72,8 @@ pub(crate) fn operator(
         Solver::Auto => Some(Ordering::new(&matrix, &groups)?),
         Solver::Direct | Solver::Iterative => None,
     };
-    let mut solver = Box::new(Iterative::new(matrix, &groups)?.on(of.ranks));
+    let place = |unknown: usize| system.x[nodes[unknown] as usize];
+    let mut solver = Box::new(Iterative::new(matrix, &groups)?.on(of.ranks, place)?);
     match order {
         Some(order) if !pays(&mut solver, (system, of), order.work()) => {
             factor(solver.matrix(), order)

@@ -2,7 +2,6 @@
 
 use thiserror::Error as ThisError;
 
-
 /// Errors of this crate.
 #[derive(Debug, ThisError)]
 pub enum Error {

@@ -38,8 +38,8 @@ mod sum;
 mod update;
 mod watch;
 
-use carom_nonsmooth::{coulomb, interface};
 pub use alike::Alike;
+use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;
 use carom_system as system;

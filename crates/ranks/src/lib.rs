@@ -3,12 +3,16 @@
 //! [`Ranks`] is what the rest of the program sees, in one process too. Its messages go over MPI with the feature `mpi`, or between the
 //! threads of one process ([`threads`]), as tests do without MPI.
 
+mod engine;
 mod link;
 #[cfg(feature = "mpi")]
 mod message_passing;
 mod partition;
+#[cfg(feature = "petsc")]
+mod petsc;
 mod threads;
 
+pub use engine::{Engine, OwnRows, Unsolved};
 pub use link::{Message, Ranks};
 pub use partition::partition;
 pub use threads::threads;

@@ -4,6 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::engine::{Engine, OwnRows};
+
 /// Numbers to or from a rank; their count is known to both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Message {
@@ -25,6 +27,10 @@ pub(crate) trait Link: Send + Sync {
     fn broadcast(&self, values: &mut Vec<f64>);
     /// Gives each rank's own part of some numbers to all others; `starts`: where the parts begin, and their end.
     fn gather(&self, values: &mut [f64], starts: &[usize]);
+    /// Whether these ranks are those of an engine.
+    fn has_engine(&self) -> bool {
+        false
+    }
 }
 
 /// The ranks of a run as one of them sees them.
@@ -115,6 +121,24 @@ impl Ranks {
         if let Some(link) = &self.link {
             link.broadcast(values);
         }
+    }
+
+    /// Whether an engine solves linear equations over these ranks: PETSc, with the feature `petsc`.
+    pub fn has_engine(&self) -> bool {
+        self.link.as_ref().is_some_and(|link| link.has_engine())
+    }
+
+    /// The engine's solver of a matrix of which each rank gives its rows; none without an engine.
+    ///
+    /// # Errors
+    /// What the engine says.
+    pub fn engine(&self, rows: &OwnRows) -> Result<Option<Engine>, String> {
+        #[cfg(feature = "petsc")]
+        if self.has_engine() {
+            return Engine::new(self, rows).map(Some);
+        }
+        let _ = rows;
+        Ok(None)
     }
 
     /// Where the parts of `count` things begin that ranks share in their order, and their end.

@@ -14,6 +14,9 @@ use crate::link::{Link, Message, Ranks};
 
 /// MPI from its beginning to its end.
 pub struct Session {
+    // ends before MPI does
+    #[cfg(feature = "petsc")]
+    _petsc: crate::petsc::Library,
     _universe: Universe,
 }
 
@@ -31,6 +34,8 @@ pub fn begin() -> Option<(Session, Ranks)> {
         return None;
     }
     let session = Session {
+        #[cfg(feature = "petsc")]
+        _petsc: crate::petsc::begin().ok()?,
         _universe: universe,
     };
     let ranks = match SimpleCommunicator::world().size() {
@@ -94,6 +99,10 @@ impl Link for World {
         first.broadcast_into(&mut length);
         values.resize(length as usize, 0.0);
         first.broadcast_into(&mut values[..]);
+    }
+
+    fn has_engine(&self) -> bool {
+        cfg!(feature = "petsc")
     }
 
     fn gather(&self, values: &mut [f64], starts: &[usize]) {

@@ -4,7 +4,7 @@
 //! element, whatever the number of unknowns: iterations do not grow with the mesh at a given Courant number. No factor, no memory
 //! beyond the matrix and some vectors.
 
-use carom_ranks::Ranks;
+use carom_ranks::{Engine, OwnRows, Ranks};
 use rayon::prelude::*;
 
 use crate::dense::DenseCholesky;
@@ -39,6 +39,10 @@ pub struct Iterative {
     /// Who shares the rows of products, and where the parts of each begin.
     ranks: Ranks,
     parts: Vec<usize>,
+    /// Place of the node of each block, m; empty in one process.
+    nodes: Vec<[f64; 3]>,
+    /// What solves without contacts in place of the iterations here, of ranks that have it.
+    engine: Option<Engine>,
 }
 
 impl Iterative {
@@ -68,27 +72,85 @@ impl Iterative {
             products: 0,
             ranks: Ranks::alone(),
             parts: vec![0, matrix.n],
+            nodes: Vec::new(),
+            engine: None,
             matrix,
         };
         solver.invert()?;
         Ok(solver)
     }
 
-    /// Shares the rows of products with other ranks, which all have the matrix: each multiplies its own and is given the others.
-    #[must_use]
-    pub fn on(mut self, ranks: &Ranks) -> Self {
-        self.parts = ranks.starts(self.matrix.n);
+    /// Shares the rows of products with other ranks, which all have the matrix: each multiplies its own and is given the others. Ranks that
+    /// have an engine ([`Ranks::has_engine`]) solve with it. `place`: of the node of an unknown, m.
+    ///
+    /// # Errors
+    /// [`Error::Engine`].
+    pub fn on(mut self, ranks: &Ranks, place: impl Fn(usize) -> [f64; 3]) -> Result<Self, Error> {
+        if ranks.count() == 1 {
+            return Ok(self);
+        }
+        let blocks = self.starts.len() - 1;
+        let begins = ranks.starts(blocks).into_iter();
+        self.parts = begins.map(|block| self.starts[block] as usize).collect();
+        let firsts = self.starts[..blocks].iter();
+        self.nodes = firsts.map(|&first| place(first as usize)).collect();
         self.ranks = ranks.clone();
-        self
+        self.take_engine()?;
+        Ok(self)
+    }
+
+    /// Gives the own rows to the engine, if there is one.
+    fn take_engine(&mut self) -> Result<(), Error> {
+        if !self.ranks.has_engine() {
+            return Ok(());
+        }
+        // its solver before goes first, of which memory may have no room for two
+        self.engine = None;
+        let rows = self.own_rows();
+        self.engine = self
+            .ranks
+            .engine(&rows)
+            .map_err(|cause| Error::Engine { cause })?;
+        Ok(())
+    }
+
+    fn own_rows(&self) -> OwnRows<'_> {
+        let rank = self.ranks.rank();
+        let own = self.parts[rank]..self.parts[rank + 1];
+        let sizes = self.starts.windows(2).map(|pair| pair[1] - pair[0]);
+        let block = sizes.clone().next().unwrap_or(1);
+        // two or three displacements at each node
+        let alike = (2..=3).contains(&block) && sizes.clone().all(|size| size == block);
+        let mut rows = OwnRows {
+            starts: &self.parts,
+            offsets: vec![0],
+            columns: Vec::new(),
+            values: Vec::new(),
+            block: if alike { block as usize } else { 1 },
+            places: Vec::new(),
+        };
+        for i in own.clone() {
+            let (columns, values) = self.matrix.row(i);
+            rows.columns.extend(columns.iter().map(|j| *j as i32));
+            rows.values.extend_from_slice(values);
+            rows.offsets.push(rows.values.len() as i32);
+        }
+        if alike {
+            let dim = block as usize;
+            let places = &self.nodes[own.start / dim..own.end / dim];
+            rows.places = places.iter().flat_map(|x| x[..dim].to_vec()).collect();
+        }
+        rows
     }
 
     /// Takes another matrix with the same unknowns.
     ///
     /// # Errors
-    /// A block on the diagonal that is not positive definite or not finite.
+    /// A block on the diagonal that is not positive definite or not finite; [`Error::Engine`].
     pub fn renew(&mut self, matrix: Csr) -> Result<(), Error> {
         self.matrix = matrix;
-        self.invert()
+        self.invert()?;
+        self.take_engine()
     }
 
     /// Inverts the blocks on the diagonal.
@@ -179,6 +241,17 @@ impl Iterative {
     /// # Errors
     /// A direction along which the matrix is not positive; iterations that do not end.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> Result<usize, Error> {
+        if let Some(engine) = &mut self.engine {
+            let solved = engine.solve(b, x, tolerance);
+            let iterations = *solved.as_ref().unwrap_or_else(|failed| &failed.iterations);
+            self.products += iterations;
+            return solved.map_err(|failed| Error::Engine {
+                cause: format!(
+                    "{} after {iterations} iterations, residual {:e}",
+                    failed.cause, failed.residual
+                ),
+            });
+        }
         x.fill(0.0);
         let mut residual = std::mem::take(&mut self.residual);
         let mut preconditioned = std::mem::take(&mut self.preconditioned);

@@ -407,17 +407,20 @@ fn ranks_send_what_is_counted() {
 /// A block of 9 000 unknowns that falls on a plane, with iterations in place of a factor.
 fn iterated() -> String {
     let text = BLOCK.replace("elements = [5, 4, 6]", "elements = [13, 13, 14]");
-    let text = text.replace("scheme.central-difference = {}", "scheme.theta = {}\nsolver = \"iterative\"");
+    let text = text.replace(
+        "scheme.central-difference = {}",
+        "scheme.theta = {}\nsolver = \"iterative\"",
+    );
     let text = text.replace("end = \"1.5 ms\"", "end = \"0.6 ms\"");
-    text.replace("step = { critical = 0.2 }", "step = \"50 us\"").replace("MATERIAL", SMALL)
+    text.replace("step = { critical = 0.2 }", "step = \"50 us\"")
+        .replace("MATERIAL", SMALL)
 }
 
 #[test]
 fn steps_that_every_rank_takes_have_the_bits_of_one_process() {
-    let static_pair = PAIR.replace(
-        "scheme.central-difference = {}",
-        "scheme.newmark = {}",
-    ).replace("step = { critical = 0.5 }", "step = \"0.1 ms\"");
+    let static_pair = PAIR
+        .replace("scheme.central-difference = {}", "scheme.newmark = {}")
+        .replace("step = { critical = 0.5 }", "step = \"0.1 ms\"");
     for text in [iterated(), static_pair] {
         let folder = tempfile::tempdir().unwrap();
         let alone = folder.path().join("alone");
