@@ -36,6 +36,14 @@ def test_frames_have_units_and_all_digits(results):
     assert impacts["peak_mean_force_n"][0] == pytest.approx(66.74e3, rel=0.01)
 
 
+def test_compressed_histories_are_read(bars, tmp_path):
+    plain = bars.run(tmp_path / "plain")
+    bars["output"] = {"compress-histories": True}
+    packed = bars.run(tmp_path / "packed")
+    assert not (tmp_path / "packed/histories.csv").exists()
+    assert packed.histories.equals(plain.histories)
+
+
 def test_frames_of_polars(results):
     polars = pytest.importorskip("polars")
     assert isinstance(results.frame(library="polars"), polars.DataFrame)
