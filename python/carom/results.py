@@ -156,7 +156,10 @@ class Results:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
-        text = (self.folder / "summary.json").read_text(encoding="utf-8")
+        summary = self.folder / "summary.json"
+        if not summary.is_file():
+            raise FileNotFoundError(f"{self.folder} is no results folder: it has no summary.json")
+        text = summary.read_text(encoding="utf-8")
         self.summary = Summary(json.loads(text))
         self._histories: dict[str, NDArray[Any]] | None = None
 

@@ -37,7 +37,13 @@ class Table:
         return (name for name, _, _ in self.runs)
 
     def __getitem__(self, name: str) -> Results:
-        """Results of the run of this name."""
+        """Results of the run of this name.
+
+        Raises:
+            KeyError: there is no such run; the message lists those there are.
+        """
+        if name not in list(self):
+            raise KeyError(f"no run `{name}`; there are: {', '.join(self)}")
         return Results(self.folder / name)
 
     @property

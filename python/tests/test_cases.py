@@ -175,6 +175,8 @@ except KeyboardInterrupt:
 
 def test_tables_of_variants_and_of_values(bars, tmp_path):
     table = carom.compare(bars, ["theta", {"newmark": {"beta": 0.49, "gamma": 0.9}}], folder=tmp_path / "compare", reference="exact")
+    with pytest.raises(KeyError, match="there are: theta"):
+        table["nothing"]
     assert len(table) == 2 and [verdict for _, verdict, _ in table.runs] != ["failed"] * 2
     frame = table.frame
     assert len(frame) == 2

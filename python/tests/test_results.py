@@ -22,6 +22,11 @@ def test_the_summary_has_attributes(results):
         summary.nothing
 
 
+def test_a_folder_without_results_is_refused(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no results folder"):
+        carom.Results(tmp_path)
+
+
 def test_frames_have_units_and_all_digits(results):
     frame = results.histories
     assert frame.index.name == "time_s"
