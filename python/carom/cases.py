@@ -13,6 +13,7 @@ from . import _carom
 from .progress import bar
 from .results import Results
 from .simulation import Simulation
+from .words import inline
 
 
 class Check:
@@ -36,12 +37,12 @@ class Case(MutableMapping[str, Any]):
     """A case, with the tables and keys of the case file.
 
     Args:
-        source: a case file, or its tables as a dict.
-        folder: folder that paths in the case start from. Default: that of the file; of a dict the working folder.
+        source: a case file, its tables as a dict, or another case.
+        folder: folder that paths in the case start from. Default: that of the file or the other case; of a dict the working folder.
         tables: tables beside those of `source`, which they replace: `Case(time={"end": "1 ms"}, ...)`.
 
-    Values are those of TOML: numbers in SI units, or texts with units such as "1 us". Arrays of NumPy are lists; what is
-    `None` is left out. A case that was changed after it was read is written anew, without the comments of its file.
+    Values are those of TOML: numbers in SI units, or texts with units such as "1 us". Arrays of NumPy are lists, schemes and laws
+    as objects are their tables; what is `None` is left out. A case that was changed after it was read is written anew, without the comments of its file.
 
     Raises:
         CaseError: the file cannot be read, or is no TOML.
@@ -59,6 +60,9 @@ class Case(MutableMapping[str, Any]):
         self._tables: dict[str, Any] = {}
         self._read: dict[str, Any] = {}
         base: Path | str = ""
+        self.folder: Path
+        if isinstance(source, Case):
+            base = source.folder
         if isinstance(source, Mapping):
             self._tables = copy.deepcopy(dict(source))
         elif source is not None:
@@ -200,7 +204,7 @@ def resume(
     changes = dict(set or {})
     if until is not None:
         changes["time.end"] = until
-    overrides = [f"{key}={json.dumps(value)}" for key, value in changes.items()]
+    overrides = [f"{key}={inline(value)}" for key, value in changes.items()]
     with bar(progress) as show:
         _carom.resume(os.fspath(folder), overrides, show)
     return Results(folder)

@@ -99,6 +99,8 @@ def solve(
     _sound(D, q, sparse)
     n = q.size
     held = np.zeros(n, dtype=bool)
+    if any(not 0 <= row < n for row in bilateral):
+        raise ValueError(f"bilateral: {list(bilateral)}; accepted: rows of D from 0 to {n - 1}")
     held[list(bilateral)] = True
     if tangents not in (0, 1, 2):
         raise ValueError(f"tangents: {tangents}; accepted: 0, 1 or 2")
@@ -203,8 +205,8 @@ def _residuals(
     normal = free[::width]
     pressed = diagonal[normal] * p[normal]
     found = Residuals(
-        penetration=float(np.max(-g[normal], initial=0.0)),
-        tension=float(np.max(-pressed, initial=0.0)),
+        penetration=float(np.max(0.0 - g[normal], initial=0.0)),
+        tension=float(np.max(0.0 - pressed, initial=0.0)),
         complementarity=float(np.max(np.abs(np.minimum(g[normal], pressed)), initial=0.0)),
         bilateral=float(np.max(np.abs(g[held]), initial=0.0)),
     )

@@ -13,6 +13,7 @@ class Law:
 
     Attributes:
         name: as in the case file.
+        table: name and parameters as the case file has them: `case["contact"][...]["law"] = law`.
         level: what it constrains at the end of the step: `gap`, `rate`, or `gap and rate`.
         capture: the instant at which the geometry is taken, as a fraction of the step ahead of the newest known configuration.
         relation: factors of `gap g + rate ġ + compliance P + offset = 0` of a closed point of 1 m².
@@ -22,7 +23,8 @@ class Law:
     """
 
     def __init__(self, name: str, **parameters: Any) -> None:
-        self._json = json.dumps({name: {key.replace("_", "-"): value for key, value in parameters.items()}})
+        self.table: dict[str, dict[str, Any]] = {name: {key.replace("_", "-"): value for key, value in parameters.items()}}
+        self._json = json.dumps(self.table)
         known = _carom.law(self._json)
         self.name: str = known["name"]
         self.level: str = known["level"]

@@ -5,6 +5,7 @@ For models of other programs: reduced by modes, read from Matrix Market, or asse
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -67,6 +68,7 @@ class Matrices:
 
     Raises:
         ValueError: sizes that do not fit, or a law that the scheme cannot hold.
+        FileNotFoundError: there is no file of a matrix.
         RunError: M, or M and K as the scheme joins them, are not positive definite.
     """
 
@@ -162,6 +164,9 @@ def _matrix(given: Any) -> Any:
     from scipy import io, sparse
 
     if isinstance(given, str) or hasattr(given, "__fspath__"):
+        # SciPy says of a file that is not there that it has no banner
+        if not os.path.isfile(given):
+            raise FileNotFoundError(f"{os.fspath(given)}: no such file of a matrix")
         given = io.mmread(given)
     return sparse.csr_array(given).astype(float)
 

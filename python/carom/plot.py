@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
+from numpy.typing import NDArray
 
 
 class Plot:
     """Figures of the histories of a run."""
 
-    def __init__(self, columns: dict[str, np.ndarray]) -> None:
+    def __init__(self, columns: dict[str, NDArray[Any]]) -> None:
         self._columns = columns
 
     def columns(self, *names: str, axes: Any = None) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import html
 import json
 import os
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .plot import Plot
 
@@ -109,6 +111,11 @@ class Fields(Sequence["Any"]):
             return pyvista.read(files[0][1])
         return pyvista.MultiBlock({name: pyvista.read(file) for name, file in files})
 
+    def __repr__(self) -> str:
+        if not len(self):
+            return "<no fields>"
+        return f"<fields at {len(self)} instants from {self.times[0]:.6g} s to {self.times[-1]:.6g} s>"
+
     def at(self, time: float) -> Any:
         """The instant nearest to a time, s."""
         return self[int(np.argmin(np.abs(self.times - time)))]
@@ -149,9 +156,12 @@ class Results:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
-        text = (self.folder / "summary.json").read_text(encoding="utf-8")
+        summary = self.folder / "summary.json"
+        if not summary.is_file():
+            raise FileNotFoundError(f"{self.folder} is no results folder: it has no summary.json")
+        text = summary.read_text(encoding="utf-8")
         self.summary = Summary(json.loads(text))
-        self._histories: dict[str, np.ndarray] | None = None
+        self._histories: dict[str, NDArray[Any]] | None = None
 
     def __repr__(self) -> str:
         return f"<carom.Results {self.summary.title!r} in {self.folder}: verdict {self.summary.verdict.grade}>"
@@ -161,16 +171,19 @@ class Results:
         """Whether every line of the verdict is good."""
         return bool(self.summary.verdict.grade == "good")
 
-    def table(self, name: str = "histories.csv") -> dict[str, np.ndarray]:
-        """The columns of a table of the folder as arrays; empty cells are NaN, texts stay texts."""
-        with (self.folder / name).open(encoding="utf-8", newline="") as file:
+    def table(self, name: str = "histories.csv") -> dict[str, NDArray[Any]]:
+        """The columns of a table of the folder as arrays, also of a compressed one; empty cells are NaN, texts stay texts."""
+        path = self.folder / name
+        packed = self.folder / f"{name}.gz"
+        opened = gzip.open(packed, "rt", encoding="utf-8", newline="") if packed.is_file() else path.open(encoding="utf-8", newline="")
+        with opened as file:
             rows = csv.reader(file)
             heads = next(rows)
             columns = list(zip(*rows)) or [()] * len(heads)
         return {head: _numbers(column) for head, column in zip(heads, columns)}
 
     @property
-    def columns(self) -> dict[str, np.ndarray]:
+    def columns(self) -> dict[str, NDArray[Any]]:
         """The histories as arrays, without pandas; read once."""
         if self._histories is None:
             self._histories = self.table()
@@ -226,7 +239,7 @@ class Results:
         return Plot(self.columns)
 
 
-def _numbers(column: Sequence[str]) -> np.ndarray:
+def _numbers(column: Sequence[str]) -> NDArray[Any]:
     try:
         return np.array([float(cell) if cell else np.nan for cell in column])
     except ValueError:

@@ -29,6 +29,7 @@ class Scheme:
 
     Attributes:
         name: as in the case file.
+        table: name and parameters as the case file has them: `case["time"]["scheme"] = scheme`.
         order: of convergence in the step, without contact.
         critical: critical omega dt of an explicit scheme, otherwise None.
 
@@ -37,7 +38,8 @@ class Scheme:
     """
 
     def __init__(self, name: str, **parameters: Any) -> None:
-        self._json = json.dumps({name: {key.replace("_", "-"): value for key, value in parameters.items()}})
+        self.table: dict[str, dict[str, Any]] = {name: {key.replace("_", "-"): value for key, value in parameters.items()}}
+        self._json = json.dumps(self.table)
         known = _carom.scheme(self._json, 1.0)
         self.name: str = known["name"]
         self.order: int = known["order"]

@@ -48,11 +48,17 @@ class Simulation:
         return f"<carom.Simulation step {self.steps}, t = {self.time:.6g} s of {self.end:.6g} s>"
 
     def step(self, count: int = 1) -> None:
-        """Takes steps, also beyond the end of the case.
+        """Takes steps, also beyond the end of the case as long as no results folder has been completed there.
+
+        Args:
+            count: number of steps.
 
         Raises:
+            ValueError: a negative number of steps.
             RunError: a step failed; the state is the one before it.
         """
+        if count < 0:
+            raise ValueError(f"{count} steps; accepted: zero or more")
         take = self._raw.step
         for _ in range(count):
             take()
@@ -73,7 +79,7 @@ class Simulation:
         direction: Sequence[float],
         size: float | Callable[[Simulation], float] | None = None,
     ) -> _carom.Force:
-        """Adds a force, before the first step.
+        """Adds a force, before the first step and the first view.
 
         Args:
             on: group of nodes of the mesh, with equal shares.

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from . import _carom
 from .cases import Case
+from .laws import Law
 from .results import Report, Results
+from .schemes import Scheme
+from .words import inline
 
 
 class Table:
@@ -34,7 +37,13 @@ class Table:
         return (name for name, _, _ in self.runs)
 
     def __getitem__(self, name: str) -> Results:
-        """Results of the run of this name."""
+        """Results of the run of this name.
+
+        Raises:
+            KeyError: there is no such run; the message lists those there are.
+        """
+        if name not in list(self):
+            raise KeyError(f"no run `{name}`; there are: {', '.join(self)}")
         return Results(self.folder / name)
 
     @property
@@ -53,23 +62,25 @@ class Table:
         return "\n".join(lines)
 
 
-def _words(choices: Iterable[str | Mapping[str, Mapping[str, Any]]]) -> list[str]:
+Choice = str | Mapping[str, Mapping[str, Any]] | Scheme | Law
+
+
+def _words(choices: Iterable[Choice]) -> list[str]:
     """Schemes or laws as the command takes them: a name, or a name with parameters."""
     words = []
     for choice in choices:
         if isinstance(choice, str):
             words.append(choice)
             continue
-        for name, parameters in choice.items():
-            inner = ", ".join(f"{key} = {json.dumps(value)}" for key, value in parameters.items())
-            words.append(f"{name} = {{ {inner} }}" if inner else name)
+        table = choice.table if isinstance(choice, (Scheme, Law)) else choice
+        words.extend(f"{name} = {inline(parameters)}" if parameters else name for name, parameters in table.items())
     return words
 
 
 def compare(
     case: Case,
-    schemes: Iterable[str | Mapping[str, Mapping[str, Any]]] = (),
-    laws: Iterable[str | Mapping[str, Mapping[str, Any]]] = (),
+    schemes: Iterable[Choice] = (),
+    laws: Iterable[Choice] = (),
     *,
     beside: Iterable[Case | str | os.PathLike[str]] = (),
     folder: str | os.PathLike[str] | None = None,
@@ -81,8 +92,9 @@ def compare(
 
     Args:
         case: the case.
-        schemes: `"newmark"`, `{"newmark": {"beta": 0.5, "gamma": 0.9}}`, or `"case"` for the scheme of the case.
-        laws: contact laws for all contacts, in the same form.
+        schemes: `"newmark"`, `{"newmark": {"beta": 0.5, "gamma": 0.9}}`, `carom.schemes.Scheme("newmark", beta=0.5, gamma=0.9)`, or `"case"`
+            for the scheme of the case.
+        laws: contact laws for all contacts, in the same forms.
         beside: other cases of the same problem, or their files, which run as they are and get a row in the same table: that of a
             file is named after it, that of a dict or of a changed case `beside`, the next one `beside-2`.
         folder: common folder. Default: the name of the case file with the ending `.compare`.
@@ -141,7 +153,7 @@ class Study(Table):
 
 def study(
     case: Case,
-    *axes: Mapping[str, Sequence[Any]],
+    *axes: Mapping[str, Iterable[Any]],
     fit: str | None = None,
     between: tuple[float, float] | None = None,
     to: Mapping[str, float | str | os.PathLike[str]] | None = None,
@@ -181,7 +193,7 @@ def study(
         found = json.loads((Path(folder) / "fit.json").read_text(encoding="utf-8"))
         return Study(folder, "study.csv", runs, Fitted(**found))
     texts = [
-        "; ".join(f"{key}={','.join(json.dumps(value) for value in values)}" for key, values in axis.items())
+        "; ".join(f"{key}={','.join(map(inline, values))}" for key, values in axis.items())
         for axis in axes
     ]
     return Study(folder, "study.csv", _carom.study(case._given(), texts, into))

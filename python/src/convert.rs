@@ -87,6 +87,10 @@ fn from_python_plain(value: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
     if value.hasattr("__fspath__")? {
         return Ok(Value::String(value.call_method0("__fspath__")?.extract()?));
     }
+    // schemes and laws as objects
+    if let Ok(table) = value.getattr("table") {
+        return from_python(&table, path);
+    }
     if let Ok(items) = value.try_iter() {
         let items = items.enumerate();
         let items = items.map(|(k, item)| from_python(&item?, &format!("{path}[{k}]")));

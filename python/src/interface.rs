@@ -1,29 +1,12 @@
 //! The interface problem by itself.
 
-use carom_laws::{Displacement, Law, Local, Status};
+use carom_laws::Status;
 use carom_nonsmooth::coulomb::{FrictionProblem, Slip, Tangential};
 use carom_nonsmooth::interface::{Candidate, InterfaceProblem};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::errors::failed;
-
-/// A point that must not be entered, with its gap without forces.
-fn candidate(gap_free: f64) -> Candidate {
-    Candidate {
-        law: Law::Displacement(Displacement::default()),
-        local: Local {
-            area: 1.0,
-            share: 1.0,
-            gap_free,
-            ..Local::default()
-        },
-        rate_free: 0.0,
-        status: Status::Open,
-        faces_itself: false,
-        instant: [1.0; 2],
-    }
-}
 
 /// Forces p of `0 <= q + D p, p >= 0, p (q + D p) = 0`, whether each point is closed, and the number of passes.
 #[pyfunction]
@@ -35,7 +18,12 @@ pub(crate) fn solve_normal(
     let problem = InterfaceProblem {
         step: 0,
         names: Vec::new(),
-        candidates: q.as_slice()?.iter().map(|q| candidate(*q)).collect(),
+        candidates: q
+            .as_slice()?
+            .iter()
+            .copied()
+            .map(Candidate::unilateral)
+            .collect(),
         compliance: d.as_slice()?.to_vec(),
         factors: [1.0, 0.0],
     };
@@ -72,7 +60,10 @@ pub(crate) fn solve_friction(
         step: 0,
         names: Vec::new(),
         friction: friction.collect(),
-        candidates: rows.iter().map(|row| candidate(row[0])).collect(),
+        candidates: rows
+            .iter()
+            .map(|row| Candidate::unilateral(row[0]))
+            .collect(),
         tangents,
         compliance: d.as_slice()?.to_vec(),
         factors: [1.0, 0.0, 1.0],

@@ -6,15 +6,22 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+/// What is wrong with a scheme or a law, without the place in a text that the user has not seen.
+fn wrong(error: &serde_json::Error) -> PyErr {
+    let message = error.to_string();
+    let place = format!(" at line {} column {}", error.line(), error.column());
+    let cause = message.strip_suffix(&place).unwrap_or(&message);
+    PyValueError::new_err(cause.to_owned())
+}
+
 /// A scheme as the case file has it.
 pub(crate) fn read_scheme(json: &str) -> PyResult<Scheme> {
-    serde_json::from_str(json).map_err(|error| PyValueError::new_err(error.to_string()))
+    serde_json::from_str(json).map_err(|error| wrong(&error))
 }
 
 /// A law as the case file has it, with what it leaves out at zero.
 pub(crate) fn read_law(json: &str) -> PyResult<Law> {
-    let given: GivenLaw =
-        serde_json::from_str(json).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    let given: GivenLaw = serde_json::from_str(json).map_err(|error| wrong(&error))?;
     let law = given.law(&Defaults::default());
     law.map_err(|error| PyValueError::new_err(error.to_string()))
 }

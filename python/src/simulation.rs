@@ -8,7 +8,7 @@
 use std::path::PathBuf;
 use std::sync::Mutex;
 
-use carom_case::{AddedForce, build_with};
+use carom_case::{AddedForce, Built, build_with};
 use carom_dynamics::{Held, Order, Stepper};
 use carom_laws::Status;
 use numpy::ndarray::{ArrayView1, ArrayView2};
@@ -30,6 +30,10 @@ impl Force {
     #[getter]
     fn value(&self) -> f64 {
         self.0.get()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<carom.Force of {} N>", self.0.get())
     }
 
     #[setter]
@@ -124,6 +128,8 @@ fn write(run: &dyn Stepper, seen: Seen, out: &mut [f64]) {
 pub(crate) struct Simulation {
     loaded: Option<Loaded>,
     folder: Option<PathBuf>,
+    /// Whether there is a results folder, which is complete once the end is reached.
+    writes: bool,
     forces: Vec<AddedForce>,
     /// Functions of the simulation that give the size of a force before each step.
     controls: Vec<(Held, Py<PyAny>)>,
@@ -146,6 +152,15 @@ impl Simulation {
             self.run = Some(Mutex::new(begun.map_err(|error| failed(&error))?));
         }
         own(&mut self.run).ok_or_else(|| PyRuntimeError::new_err("the simulation could not begin"))
+    }
+
+    /// The case as built. Asking for it does not begin the run, so that forces can still be added.
+    fn built(&mut self) -> PyResult<&Built> {
+        match (&self.loaded, own(&mut self.run)) {
+            (Some(loaded), _) => Ok(&loaded.built),
+            (None, Some(run)) => Ok(run.built()),
+            (None, None) => Err(PyRuntimeError::new_err("the simulation could not begin")),
+        }
     }
 
     fn take_step(&mut self, py: Python<'_>) -> PyResult<()> {
@@ -249,6 +264,7 @@ impl Simulation {
     fn new(py: Python<'_>, given: Given, folder: Option<PathBuf>) -> PyResult<Simulation> {
         Ok(Simulation {
             loaded: Some(load(py, given)?),
+            writes: folder.is_some(),
             folder,
             forces: Vec::new(),
             controls: Vec::new(),
@@ -303,7 +319,10 @@ impl Simulation {
             return Ok(None);
         }
         if slf.borrow_mut().begun(slf.py())?.is_done() {
-            slf.borrow_mut().end(slf.py())?;
+            let mut this = slf.borrow_mut();
+            if this.writes {
+                this.end(slf.py())?;
+            }
             return Ok(None);
         }
         Simulation::step(slf)?;
@@ -347,22 +366,28 @@ impl Simulation {
 
     #[getter]
     fn time(&mut self, py: Python<'_>) -> PyResult<f64> {
-        Ok(self.begun(py)?.run().state().time)
+        match self.loaded {
+            Some(_) => Ok(0.0),
+            None => Ok(self.begun(py)?.run().state().time),
+        }
     }
 
     #[getter]
     fn steps(&mut self, py: Python<'_>) -> PyResult<u64> {
-        Ok(self.begun(py)?.run().state().step)
+        match self.loaded {
+            Some(_) => Ok(0),
+            None => Ok(self.begun(py)?.run().state().step),
+        }
     }
 
     #[getter]
-    fn end_time(&mut self, py: Python<'_>) -> PyResult<f64> {
-        Ok(self.begun(py)?.built().end)
+    fn end_time(&mut self) -> PyResult<f64> {
+        Ok(self.built()?.end)
     }
 
     #[getter]
-    fn dt(&mut self, py: Python<'_>) -> PyResult<f64> {
-        Ok(self.begun(py)?.run().system().dt)
+    fn dt(&mut self) -> PyResult<f64> {
+        Ok(self.built()?.system.dt)
     }
 
     #[getter]
@@ -371,8 +396,8 @@ impl Simulation {
     }
 
     #[getter]
-    fn dimension(&mut self, py: Python<'_>) -> PyResult<usize> {
-        Ok(self.begun(py)?.run().system().dim)
+    fn dimension(&mut self) -> PyResult<usize> {
+        Ok(self.built()?.system.dim)
     }
 
     /// Forces of the contacts in the last step, N, by name.
@@ -404,8 +429,8 @@ impl Simulation {
     }
 
     /// Nodes of a group of the mesh, from 0.
-    fn nodes(&mut self, py: Python<'_>, group: &str) -> PyResult<Vec<u32>> {
-        let mesh = &self.begun(py)?.run().system().mesh;
+    fn nodes(&mut self, group: &str) -> PyResult<Vec<u32>> {
+        let mesh = &self.built()?.system.mesh;
         match mesh.groups.get(group) {
             Some(group) => Ok(mesh.group_nodes(group)),
             None => {
@@ -421,8 +446,8 @@ impl Simulation {
 
     /// Places of the nodes of the mesh, m.
     #[getter]
-    fn places(&mut self, py: Python<'_>) -> PyResult<Vec<[f64; 3]>> {
-        Ok(self.begun(py)?.run().system().mesh.nodes.clone())
+    fn places(&mut self) -> PyResult<Vec<[f64; 3]>> {
+        Ok(self.built()?.system.mesh.nodes.clone())
     }
 
     #[getter]

@@ -49,6 +49,28 @@ def test_keyword_arguments_replace_tables(bars):
     assert case.simulate().run().steps == 10
 
 
+def test_schemes_and_laws_as_objects(bars, tmp_path):
+    scheme, law = carom.schemes.Scheme("newmark", beta=0.49, gamma=0.9), carom.laws.Law("velocity", capture="half")
+    bars["time"]["scheme"], bars["contact"]["shock"]["law"] = scheme, law
+    bars.save(tmp_path / "case.toml")
+    read = carom.Case(tmp_path / "case.toml")
+    assert read["time"]["scheme"] == {"newmark": {"beta": 0.49, "gamma": 0.9}} == scheme.table
+    assert read["contact"]["shock"]["law"] == {"velocity": {"capture": "half"}}
+    assert "newmark" in carom.Case(read).check().facts["time"] and carom.Case(read).folder == tmp_path
+    stop = {"stop": {"curve": [{"penetration": "1 mm", "force": "50 MN"}]}}
+    table = carom.compare(read, [scheme], [law, stop], folder=tmp_path / "compare", reference="none")
+    assert len(table) == 2 and "failed" not in {verdict for _, verdict, _ in table.runs}
+    forces = [results.columns["contact.shock.force_n"] for results in (table[list(table)[0]], read.run(tmp_path / "run"))]
+    assert np.array_equal(*forces)
+
+
+def test_axes_take_arrays_and_tables(bars, tmp_path):
+    axis = {"time.step.courant": np.array([1, 2]), "time.scheme": [{"theta": {"theta": 0.5}}, carom.schemes.Scheme("newmark")]}
+    study = carom.study(bars, axis, folder=tmp_path / "study")
+    names = [study[name].summary.scheme for name in study]
+    assert ["newmark" in name for name in names] == [False, True]
+
+
 @pytest.mark.parametrize("as_dict", [False, True])
 def test_a_misspelt_key_has_the_message_and_path_of_the_command(as_dict, command, tmp_path):
     text = TWO_BARS.read_text().replace("density =", "densty =")
@@ -153,6 +175,8 @@ except KeyboardInterrupt:
 
 def test_tables_of_variants_and_of_values(bars, tmp_path):
     table = carom.compare(bars, ["theta", {"newmark": {"beta": 0.49, "gamma": 0.9}}], folder=tmp_path / "compare", reference="exact")
+    with pytest.raises(KeyError, match="there are: theta"):
+        table["nothing"]
     assert len(table) == 2 and [verdict for _, verdict, _ in table.runs] != ["failed"] * 2
     frame = table.frame
     assert len(frame) == 2

@@ -102,5 +102,7 @@ def test_bad_input_is_told():
         solve(np.eye(3), np.zeros(3), friction=0.1, tangents=1)
     with pytest.raises(ValueError, match="together"):
         solve(np.eye(2), np.zeros(2), friction=0.1)
+    with pytest.raises(ValueError, match="rows of D from 0 to 1"):
+        solve(np.eye(2), np.zeros(2), bilateral=[2])
     with pytest.raises(carom.RunError):
         solve(-np.eye(2), [-1.0, -1.0])

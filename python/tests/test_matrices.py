@@ -327,3 +327,8 @@ def test_what_cannot_be_used_is_refused():
         carom.Matrices(eye, eye, eye, [0, 0], **good, friction=0.3, tangents=eye[:1])
     with pytest.raises(carom.RunError, match="positive"):
         carom.Matrices(-eye, eye, eye, [0, 0], **good)
+
+
+def test_a_file_of_a_matrix_that_is_not_there_is_told(tmp_path):
+    with pytest.raises(FileNotFoundError, match="none.mtx"):
+        carom.Matrices(tmp_path / "none.mtx", np.eye(1), [[1.0]], [0.0], law=spring(1.0), scheme=Scheme("newmark"), dt=1e-3)

@@ -22,6 +22,11 @@ def test_the_summary_has_attributes(results):
         summary.nothing
 
 
+def test_a_folder_without_results_is_refused(tmp_path):
+    with pytest.raises(FileNotFoundError, match="no results folder"):
+        carom.Results(tmp_path)
+
+
 def test_frames_have_units_and_all_digits(results):
     frame = results.histories
     assert frame.index.name == "time_s"
@@ -34,6 +39,14 @@ def test_frames_have_units_and_all_digits(results):
     assert len(impacts) == 1 and impacts["pair"][0] == "shock"
     # Z v / 2 = 66.74 kN (issue 1), within the error of the mesh
     assert impacts["peak_mean_force_n"][0] == pytest.approx(66.74e3, rel=0.01)
+
+
+def test_compressed_histories_are_read(bars, tmp_path):
+    plain = bars.run(tmp_path / "plain")
+    bars["output"] = {"compress-histories": True}
+    packed = bars.run(tmp_path / "packed")
+    assert not (tmp_path / "packed/histories.csv").exists()
+    assert packed.histories.equals(plain.histories)
 
 
 def test_frames_of_polars(results):

@@ -208,6 +208,28 @@ def test_forces_are_checked(bars):
         simulation.add_force("striker.left", [1.0])
 
 
+def test_forces_are_added_after_a_look_at_the_case(bars):
+    """What does not depend on the state does not begin the run."""
+    simulation = bars.simulate()
+    assert "step 0" in repr(simulation) and simulation.dt > 0.0 and len(simulation.places) == 42
+    force = simulation.add_force("striker.left", [1.0], 5.0)
+    assert repr(force) == "<carom.Force of 5 N>"
+    assert simulation.nodes("target.right").tolist() == [41]
+
+
+def test_steps_go_on_beyond_the_end_without_a_folder(bars, tmp_path):
+    bars["time"]["end"] = "1 us"
+    simulation = bars.simulate().run()
+    steps = simulation.steps
+    simulation.step(2)
+    assert simulation.steps == steps + 2 and list(simulation) == []
+    with pytest.raises(ValueError, match="-1 steps"):
+        simulation.step(-1)
+    complete = bars.simulate(tmp_path / "results").run()
+    with pytest.raises(RuntimeError, match="has ended"):
+        complete.step()
+
+
 def test_an_exception_in_a_callback_ends_the_run_with_its_traceback(bars, tmp_path):
     def callback(simulation):
         if simulation.steps == 7:
@@ -282,9 +304,10 @@ def test_a_million_steps_cost_at_most_a_fifth_more_than_a_run(bars, tmp_path):
     del bars["reference"]
 
     def clock(work):
-        begin = time.perf_counter()
+        # of the processor: other programs on the machine do not count
+        begin = time.process_time()
         work()
-        return time.perf_counter() - begin
+        return time.process_time() - begin
 
     def stepping():
         with bars.simulate(tmp_path / "steps") as simulation:
@@ -292,6 +315,8 @@ def test_a_million_steps_cost_at_most_a_fifth_more_than_a_run(bars, tmp_path):
                 pass
         assert simulation.steps == 1_000_000
 
-    run, steps = clock(lambda: bars.run(tmp_path / "run")), clock(stepping)
-    print(json.dumps({"run_s": run, "stepping_s": steps, "ratio": steps / run}))
-    assert steps < 1.2 * run
+    # in turns, so that a change of the clock rate meets both
+    pairs = [(clock(lambda: bars.run(tmp_path / "run")), clock(stepping)) for _ in range(3)]
+    ratios = sorted(steps / run for run, steps in pairs)
+    print(json.dumps({"run_s, stepping_s": pairs, "ratios": ratios}))
+    assert ratios[1] < 1.2

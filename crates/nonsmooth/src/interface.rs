@@ -10,43 +10,14 @@
 //! The equations are solved by a dense factor, or, where D is the product of sparse rows or not known, by conjugate gradients.
 
 use carom_algebra::dense::DenseCholesky;
-use carom_laws::{End, Law, Local, Relation, Status};
+use carom_laws::{End, Relation, Status};
 
 use crate::{Compliance, Condensed};
 use iterated::Iterated;
 use serde::{Deserialize, Serialize};
 use thiserror::Error as ThisError;
 
-/// A candidate before the solve.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Candidate {
-    /// Its law.
-    pub law: Law,
-    /// What is known of it before the forces; holds g_f.
-    pub local: Local,
-    /// ġ_f, m/s.
-    pub rate_free: f64,
-    /// Status at the end of the last step.
-    pub status: Status,
-    /// Whether its surface faces itself, so that other points may say the same as it does.
-    pub faces_itself: bool,
-    /// Factors of D P in gap and rate of this candidate over those of the problem: those of the instant at which its law
-    /// holds, `StepMap::compliant` of a scheme.
-    #[serde(default = "whole")]
-    pub instant: [f64; 2],
-}
-
-/// A law at the end of the step.
-fn whole() -> [f64; 2] {
-    [1.0; 2]
-}
-
-impl Candidate {
-    /// Factors of D P in its gap and rate; `s`: those of the problem.
-    pub(crate) fn factors(&self, s: [f64; 2]) -> [f64; 2] {
-        [self.instant[0] * s[0], self.instant[1] * s[1]]
-    }
-}
+pub use candidate::Candidate;
 
 /// Why the problem was not solved.
 #[derive(Debug, ThisError)]
@@ -516,6 +487,7 @@ fn end(
     }
 }
 
+mod candidate;
 mod iterated;
 #[cfg(test)]
 mod tests;

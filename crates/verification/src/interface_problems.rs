@@ -6,12 +6,9 @@
 //! themselves, checked by code that knows no solver: the error of a contact is |min(P_i / P, (q + D P)_i / q)|, with P and q the
 //! largest force and gap. Tolerance 1e-10 (issue of the laboratory): rounding times the condition that is left.
 
-use carom_contact::Law;
-use carom_contact::law::{Local, Status};
 use carom_dynamics::{Candidate, InterfaceProblem};
 
 use crate::Error;
-use crate::build::DISPLACEMENT;
 use crate::check::{Check, Row, Size};
 
 /// Problems of each kind and size.
@@ -47,24 +44,10 @@ fn trials(n: usize, kind: Kind, random: &mut Random) -> Result<[Row; 2], Error> 
     let (mut largest, mut unsolved) = (0.0_f64, 0);
     for _ in 0..TRIALS {
         let (d, q) = problem(n, kind, random);
-        let law: Law = DISPLACEMENT;
-        let candidate = |gap_free: &f64| Candidate {
-            law,
-            local: Local {
-                area: 1.0,
-                share: 1.0 / n as f64,
-                gap_free: *gap_free,
-                ..Local::default()
-            },
-            rate_free: 0.0,
-            status: Status::Open,
-            faces_itself: false,
-            instant: [1.0; 2],
-        };
         let problem = InterfaceProblem {
             step: 0,
             names: Vec::new(),
-            candidates: q.iter().map(candidate).collect(),
+            candidates: q.iter().copied().map(Candidate::unilateral).collect(),
             compliance: d,
             factors: [1.0, 0.0],
         };

@@ -2,7 +2,7 @@
 
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::Cholesky;
-use carom_laws::{Displacement, Law, Local, Status};
+use carom_laws::Status;
 use carom_nonsmooth::interface::{Candidate, Failure, Interface};
 use carom_nonsmooth::{Compliance, impulses_of_work};
 use pyo3::prelude::*;
@@ -81,25 +81,10 @@ impl OfMass {
     ) -> Result<(), Failure> {
         let n = rows.len();
         let d: Vec<f64> = self.over(rows).collect();
-        let candidate = |(i, value): (usize, &f64)| {
-            let own = d[i * n..(i + 1) * n].iter().zip(present);
-            let of_present: f64 = own.map(|(d, impulse)| d * impulse).sum();
-            Candidate {
-                law: Law::Displacement(Displacement::default()),
-                local: Local {
-                    gap_free: value - of_present,
-                    ..Local::default()
-                },
-                rate_free: 0.0,
-                status: match value.is_finite() {
-                    true => Status::Closed,
-                    false => Status::Open,
-                },
-                faces_itself: false,
-                instant: [1.0; 2],
-            }
-        };
-        let candidates: Vec<Candidate> = values.iter().enumerate().map(candidate).collect();
+        let points = d.chunks_exact(n.max(1)).zip(values);
+        let candidates: Vec<Candidate> = points
+            .map(|(row, value)| Candidate::beside(*value, row, present))
+            .collect();
         self.version += 1;
         let compliance = (Compliance::Dense(&d), self.version);
         self.interface.solve(&candidates, compliance, [1.0, 0.0])?;

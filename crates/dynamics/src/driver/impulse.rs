@@ -1,8 +1,8 @@
 //! The mass alone: the stages of a step that change velocities, accelerations or a predictor by impulses of the contact
 //! points. Links hold in what these change too: M⁻¹ (Nᵀ I + Cᵀ J), C M⁻¹ (Nᵀ I + Cᵀ J) = 0.
 
-use carom_contact::law::{Displacement, Local, Status};
-use carom_contact::{Law, Rows};
+use carom_contact::Rows;
+use carom_contact::law::Status;
 use carom_nonsmooth::impulses_of_work;
 
 use super::linking::{Linking, add_all_forces};
@@ -130,24 +130,10 @@ impl Impulses {
         let d = compliance.0;
         self.candidates.clear();
         for (i, value) in values.iter().enumerate() {
-            let of_present: f64 = d[i * n..(i + 1) * n]
-                .iter()
-                .zip(present)
-                .map(|(d, impulse)| d * impulse)
-                .sum();
+            let row = &d[i * n..(i + 1) * n];
             self.candidates.push(Candidate {
-                law: Law::Displacement(Displacement::default()),
-                local: Local {
-                    gap_free: value - of_present,
-                    ..Local::default()
-                },
-                rate_free: 0.0,
-                status: match value.is_finite() {
-                    true => Status::Closed,
-                    false => Status::Open,
-                },
                 faces_itself: system.point(points[i] as usize).0.faces_itself(),
-                instant: [1.0; 2],
+                ..Candidate::beside(*value, row, present)
             });
         }
         let problem = (carom_nonsmooth::Compliance::Dense(d), compliance.1);

@@ -1,4 +1,4 @@
-use carom_laws::{Adhesion, Damped, Displacement};
+use carom_laws::{Adhesion, Damped, Displacement, Law, Local};
 use carom_testing::Random;
 
 use super::*;

@@ -1,7 +1,6 @@
 //! Problems of a lumped mass, whose compliance is the product of sparse rows: nodes of a surface on the faces of another one that
 //! does not match it.
 
-use carom_laws::{Displacement, Law, Local, Status};
 use carom_nonsmooth::coulomb::{
     Coulomb, FrictionProblem, FrictionSolution, Posed, Slip, Tangential,
 };
@@ -72,17 +71,7 @@ fn filled(
 }
 
 fn candidates(count: usize, random: &mut Random) -> Vec<Candidate> {
-    let candidate = |_| Candidate {
-        law: Law::Displacement(Displacement { projection: false }),
-        local: Local {
-            gap_free: random.between(-1.5, 0.5),
-            ..Local::default()
-        },
-        rate_free: 0.0,
-        status: Status::Open,
-        faces_itself: false,
-        instant: [1.0; 2],
-    };
+    let candidate = |_| Candidate::unilateral(random.between(-1.5, 0.5));
     (0..count).map(candidate).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use carom_contact::Point;
 use carom_elements::Kind;
-use carom_laws::{Displacement, Law, Local, Status};
+use carom_laws::Status;
 use carom_mesh::{ElementId, Face, face_nodes};
 use carom_nonsmooth::Weak;
 use carom_nonsmooth::interface::{Candidate, InterfaceProblem};
@@ -47,21 +47,10 @@ fn grid(n: usize, random: &mut Random) -> Patch {
 
 /// The weak form as the step hands it on, `compliance` being D + G / (r s) and `factor` s.
 fn problem(q: &[f64], compliance: Vec<f64>, factor: f64) -> InterfaceProblem {
-    let candidate = |gap_free: &f64| Candidate {
-        law: Law::Displacement(Displacement { projection: false }),
-        local: Local {
-            gap_free: *gap_free,
-            ..Local::default()
-        },
-        rate_free: 0.0,
-        status: Status::Open,
-        faces_itself: false,
-        instant: [1.0; 2],
-    };
     InterfaceProblem {
         step: 0,
         names: Vec::new(),
-        candidates: q.iter().map(candidate).collect(),
+        candidates: q.iter().copied().map(Candidate::unilateral).collect(),
         compliance,
         factors: [factor, 0.0],
     }
