@@ -18,6 +18,8 @@ const SEEN = 0.02;
 
 /** Part of the largest value of all instants below which a value is rounding. */
 const ROUNDING = 1e-9;
+/** Largest turn of a plane model to each side, rad. */
+const TURN = (70 * Math.PI) / 180;
 
 /** A round number near a factor: 1, 2 or 5 times a power of ten. */
 function round(factor) {
@@ -168,6 +170,11 @@ class Viewer {
     this.camera.zoom = 1;
     this.orbit.target.copy(middle);
     this.orbit.enableRotate = this.model.dimension > 1;
+    // a plane model seen along its plane would be a line
+    if (this.model.dimension === 2) {
+      [this.orbit.minAzimuthAngle, this.orbit.maxAzimuthAngle] = [-TURN, TURN];
+      [this.orbit.minPolarAngle, this.orbit.maxPolarAngle] = [Math.PI / 2 - TURN, Math.PI / 2 + TURN];
+    }
     this.camera.lookAt(middle);
     this.camera.updateMatrixWorld();
     // the middle of what is seen from there stands in the middle of the frame

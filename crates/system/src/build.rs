@@ -10,7 +10,7 @@ use carom_contact::{Contact, Frames, Places};
 use carom_mesh::Parts;
 use carom_schemes::Scheme;
 
-use crate::contacts::{numbered, renumbered, sides, touching};
+use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
 use crate::error::Error;
 use crate::initial::settle;
 use crate::levers::Levers;
@@ -178,7 +178,8 @@ impl System {
             .iter()
             .map(|contact| sides(contact, &model))
             .collect();
-        let touching = touching(&model);
+        let owners = owners(&model);
+        let touching = touching(&model, &owners);
         let faces_of = |contact: &ModelContact| {
             let faces = contact.secondary.faces.iter();
             faces.map(|face| renumbered(face, &number)).collect()
@@ -200,6 +201,10 @@ impl System {
             part_of(&parts, first.unwrap_or(0))
         });
         let part_of_body: Vec<usize> = part_of_body.collect();
+        let contacts_of_all = model.contacts.iter();
+        let of_many = contacts_of_all
+            .map(|contact| is_of_many(contact, &owners, &part_of_body))
+            .collect();
         let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
         let Links {
             named: links,
@@ -259,6 +264,7 @@ impl System {
             secondary_faces,
             sides,
             touching,
+            of_many,
             first_point,
             scheme: schemes[0],
             schemes,

@@ -14,11 +14,9 @@ use crate::system::System;
 const WHICH_LAWS: &str = "at Gauss points hold, in their weak form, the displacement law without projection and the velocity law, and, in each point by itself, the compliance, and penalty and stop without damping; the other laws hold at nodes";
 
 impl System {
-    /// Whether a side of a contact has several bodies: what two bodies do to each other is then not told apart.
+    /// Whether a side of a contact has several bodies that move apart: what two bodies do to each other is then not told apart.
     pub fn is_of_many(&self, contact: usize) -> bool {
-        let (secondary, primary) = self.sides[contact];
-        let mut bodies = self.touching[contact].iter();
-        bodies.any(|&body| body != secondary && Some(body) != primary)
+        self.of_many[contact]
     }
 
     /// Tangents of a contact point in problems with friction: none where no contact has any.
@@ -127,26 +125,70 @@ pub fn sides(contact: &ModelContact, model: &Model) -> (usize, Option<usize>) {
     (body(&contact.secondary).unwrap_or(0), primary)
 }
 
-/// All bodies of each contact, ascending: those of its [`sides`], and others where a side has several.
-pub(crate) fn touching(model: &Model) -> Vec<Vec<usize>> {
-    let many = |contact: &ModelContact| contact.parts.is_some();
-    let mut owners = BTreeMap::new();
-    if model.contacts.iter().any(many) {
-        for (body, of) in model.bodies.iter().enumerate() {
-            owners.extend(of.spec.cells.iter().map(|&cell| (cell, body)));
+/// The body of each cell at a contact.
+pub(crate) fn owners(model: &Model) -> BTreeMap<ElementId, usize> {
+    let parents = |surface: &Surface| -> Vec<ElementId> {
+        surface.faces.iter().map(|face| face.parent).collect()
+    };
+    let mut cells = BTreeSet::new();
+    for contact in &model.contacts {
+        cells.extend(parents(&contact.secondary));
+        if let ModelTarget::Surface(primary) = &contact.primary {
+            cells.extend(parents(primary));
         }
     }
+    let solids = model.bodies.iter().map(|body| &body.spec.cells);
+    let discrete = model.discrete.iter().map(|body| &body.spec.cells);
+    let mut owners = BTreeMap::new();
+    for (body, of) in solids.chain(discrete).enumerate() {
+        for &cell in of.iter().filter(|cell| cells.contains(cell)) {
+            owners.entry(cell).or_insert(body);
+        }
+    }
+    owners
+}
+
+/// The bodies of the two sides of a contact; none of a rigid obstacle. `owners`: of [`owners`].
+fn bodies_of(contact: &ModelContact, owners: &BTreeMap<ElementId, usize>) -> [BTreeSet<usize>; 2] {
+    let bodies = |surface: &Surface| -> BTreeSet<usize> {
+        let faces = surface.faces.iter();
+        let known = faces.filter_map(|face| owners.get(&face.parent));
+        known.copied().collect()
+    };
+    let primary = match &contact.primary {
+        ModelTarget::Surface(surface) => bodies(surface),
+        ModelTarget::Rigid(_) => BTreeSet::new(),
+    };
+    [bodies(&contact.secondary), primary]
+}
+
+/// All bodies of each contact, ascending: those of its [`sides`], and others where a side has several.
+pub(crate) fn touching(model: &Model, owners: &BTreeMap<ElementId, usize>) -> Vec<Vec<usize>> {
     let of = |contact: &ModelContact| {
         let (secondary, primary) = sides(contact, model);
-        let mut bodies: BTreeSet<usize> =
-            [Some(secondary), primary].into_iter().flatten().collect();
-        if let (true, ModelTarget::Surface(primary)) = (many(contact), &contact.primary) {
-            let faces = contact.secondary.faces.iter().chain(&primary.faces);
-            bodies.extend(faces.filter_map(|face| owners.get(&face.parent)));
-        }
+        let first = [Some(secondary), primary].into_iter().flatten();
+        let all = bodies_of(contact, owners).into_iter().flatten();
+        let bodies: BTreeSet<usize> = first.chain(all).collect();
         bodies.into_iter().collect()
     };
     model.contacts.iter().map(of).collect()
+}
+
+/// Whether a side of a contact has several bodies that move apart: bodies that share nodes are one ([`System::part_of_body`]),
+/// unless both sides are of them.
+pub(crate) fn is_of_many(
+    contact: &ModelContact,
+    owners: &BTreeMap<ElementId, usize>,
+    part_of_body: &[usize],
+) -> bool {
+    let bodies = bodies_of(contact, owners);
+    let [one, other] = bodies
+        .each_ref()
+        .map(|side| -> BTreeSet<usize> { side.iter().map(|&body| part_of_body[body]).collect() });
+    match one.is_disjoint(&other) {
+        true => one.len().max(other.len()) > 1,
+        false => bodies.iter().any(|side| side.len() > 1),
+    }
 }
 
 /// A contact with its points and its target by system number. `x`: reference coordinates by system number, m.

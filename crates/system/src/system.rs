@@ -80,6 +80,7 @@ pub struct System {
     pub sides: Vec<(usize, Option<usize>)>,
     /// All bodies of each contact, ascending.
     pub touching: Vec<Vec<usize>>,
+    pub(crate) of_many: Vec<bool>,
     /// First contact point of each contact in the arrays over all points, and one end more.
     pub first_point: Vec<usize>,
     /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`](crate::Model::length)).

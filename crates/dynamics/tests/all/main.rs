@@ -18,6 +18,7 @@ mod friction;
 mod impacts;
 mod initial;
 mod interface;
+mod many_bodies;
 mod many_points;
 mod material_work;
 mod moments;

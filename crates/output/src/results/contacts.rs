@@ -98,7 +98,7 @@ fn no_restitution(impact: Option<&Impact>, of_parts: bool) -> Option<String> {
             "the direction of the force turned during the impact, as where bodies slide over each other"
         }
         Some(NoRestitution::ManyBodies) => {
-            "a side has several bodies; `general-contact.by = \"bodies\"` tells them apart"
+            "a side has several bodies; a contact for each, or `general-contact.by = \"bodies\"`, tells them apart"
         }
         Some(NoRestitution::MovingObstacle) => "the obstacle moves",
         None if of_parts => "links join further bodies to one of the two",
