@@ -8,7 +8,7 @@ use carom_verification::{Compared, Shown, Size};
 
 use crate::exit::{BAD, BAD_INPUT, FAILED};
 use crate::terminal;
-use crate::terminal::{err, out};
+use crate::terminal::{err, line, out};
 
 /// Runs the checks whose name contains `name`, and writes their page; returns the exit code.
 pub fn verify(name: Option<&str>, quick: bool, report: Option<&Path>) -> u8 {
@@ -23,7 +23,11 @@ pub fn verify(name: Option<&str>, quick: bool, report: Option<&Path>) -> u8 {
         }
     };
     if verdict.checks == 0 {
-        err!("error: no check of this name");
+        let checks = carom_verification::checks();
+        let names: Vec<&str> = checks.iter().map(|check| check.name).collect();
+        let asked = line(name.unwrap_or_default());
+        err!("error: no check has `{asked}` in its name");
+        err!("  = accepted: a part of one of {}", names.join(", "));
         return BAD_INPUT;
     }
     if let Some(path) = report {

@@ -162,24 +162,96 @@ fn a_rank_that_fails_ends_all_with_one_message() {
     );
 }
 
-#[test]
-fn what_ranks_do_not_take_is_refused_at_its_key() {
-    let work = tempfile::tempdir().unwrap();
+/// The block in implicit steps with iterations, each of which is a product that ranks share.
+fn write_implicit(folder: &Path) {
     let text = BLOCK
         .replace("SPEED", "-5.0")
-        .replace("critical = 0.2", "courant = 0.5")
-        .replace("central-difference", "newmark");
-    fs::write(work.path().join("case.toml"), text).unwrap();
+        .replace(
+            "step = { critical = 0.2 }",
+            "step = \"20 us\"\nsolver = \"iterative\"",
+        )
+        .replace("scheme.central-difference", "scheme.theta")
+        .replace("neo-hooke", "elastic");
+    fs::write(folder.join("case.toml"), text).unwrap();
+}
+
+#[test]
+fn implicit_steps_of_several_processes_give_the_results_of_one() {
+    let work = tempfile::tempdir().unwrap();
+    write_implicit(work.path());
+    run_alone(work.path(), &[]);
+    // of MPI alone the same bits; of PETSc what its preconditioners leave, which solves end at 1e-12
+    let options: &[&str] = match cfg!(feature = "petsc") {
+        true => &[
+            "",
+            "-pc_type gamg",
+            "-pc_type cholesky -pc_factor_mat_solver_type mumps",
+        ],
+        false => &[""],
+    };
+    for (number, options) in options.iter().enumerate() {
+        for ranks in [2, 4] {
+            let name = format!("{number}-{ranks}");
+            let output = mpirun(
+                work.path(),
+                ranks,
+                &["run", "case.toml", "--results", &name],
+            )
+            .env("PETSC_OPTIONS", options)
+            .output()
+            .unwrap();
+            assert!(output.status.success(), "{}", said(&output));
+            assert_same(&work.path().join("alone"), &work.path().join(&name));
+            assert_eq!(said(&output).matches("each rank computes all").count(), 1);
+        }
+    }
+}
+
+/// A preconditioner that PETSc does not have ends all ranks with one message: it is PETSc that solves.
+#[cfg(feature = "petsc")]
+#[test]
+fn an_error_of_petsc_ends_all_ranks() {
+    let work = tempfile::tempdir().unwrap();
+    write_implicit(work.path());
     let output = mpirun(work.path(), 2, &["run", "case.toml"])
+        .env("PETSC_OPTIONS", "-pc_type nonsense")
         .output()
         .unwrap();
     let said = said(&output);
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(
-        said.contains("time.scheme") || said.contains("scheme.newmark"),
-        "{said}"
-    );
-    assert_eq!(said.matches("several ranks take no").count(), 1, "{said}");
+    assert_eq!(output.status.code(), Some(3), "{said}");
+    assert_eq!(said.matches("PETSc: ").count(), 1, "{said}");
+}
+
+/// Cases of the project whose steps each rank takes whole: with factors, friction, a static stage and zones. All have the bits of one process.
+#[test]
+fn cases_of_the_project_have_the_bits_of_one_process() {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let work = tempfile::tempdir().unwrap();
+    for case in [
+        "two-bars",
+        "hertz",
+        "ironing",
+        "block-drop",
+        "bars-in-zones",
+    ] {
+        let file = cases.join(case).join("case.toml");
+        let run = |ranks: usize| {
+            let results = format!("{case}-{ranks}");
+            let file = file.to_str().unwrap();
+            let output = mpirun(work.path(), ranks, &["run", file, "--results", &results]);
+            let output = { output }.output().unwrap();
+            // a bad verdict is an end too
+            assert!(
+                work.path().join(&results).join("summary.json").is_file(),
+                "{}",
+                said(&output)
+            );
+            fs::read(work.path().join(&results).join("histories.csv")).unwrap()
+        };
+        let alone = run(1);
+        assert!(run(2) == alone, "{case} on 2 ranks");
+        assert!(run(4) == alone, "{case} on 4 ranks");
+    }
 }
 
 /// Waits until a file is there.
@@ -205,21 +277,29 @@ fn rank_of(mpirun: u32) -> Option<u32> {
 fn three_processes_go_on_after_one_of_four_was_killed() {
     let work = tempfile::tempdir().unwrap();
     write(work.path(), "-5.0");
-    let long = [
-        "--set",
-        "time.end=40 ms",
-        "--set",
-        "output.checkpoint.every=0.5 ms",
-    ];
-    run_alone(work.path(), &long);
+    go_on_after_a_kill(work.path(), "40 ms");
+}
+
+#[test]
+fn three_processes_go_on_with_implicit_steps_after_one_of_four_was_killed() {
+    let work = tempfile::tempdir().unwrap();
+    write_implicit(work.path());
+    go_on_after_a_kill(work.path(), "20 ms");
+}
+
+/// Kills one of four ranks after the first checkpoint; three go on.
+fn go_on_after_a_kill(folder: &Path, end: &str) {
+    let end = format!("time.end={end}");
+    let long = ["--set", &end, "--set", "output.checkpoint.every=0.5 ms"];
+    run_alone(folder, &long);
     let arguments = [&["run", "case.toml"], &long[..]].concat();
-    let mut child = mpirun(work.path(), 4, &arguments)
+    let mut child = mpirun(folder, 4, &arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
     wait_for(
-        &work.path().join("case.carom/checkpoints/last.state"),
+        &folder.join("case.carom/checkpoints/last.state"),
         &mut child,
     );
     let killed = rank_of(child.id()).expect("a rank");
@@ -235,9 +315,9 @@ fn three_processes_go_on_after_one_of_four_was_killed() {
         killed.contains("signal 9") && killed.contains("rank"),
         "{killed}"
     );
-    let output = mpirun(work.path(), 3, &["resume", "case.carom"])
+    let output = mpirun(folder, 3, &["resume", "case.carom"])
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", said(&output));
-    assert_same(&work.path().join("alone"), &work.path().join("case.carom"));
+    assert_same(&folder.join("alone"), &folder.join("case.carom"));
 }
