@@ -1,4 +1,4 @@
-//! A matrix that an engine of the ranks solves with: PETSc, with the feature `petsc`, and nothing without.
+//! What an engine of the ranks, which solves linear equations, is given and tells.
 
 /// Rows of a symmetric positive definite matrix that ranks share.
 pub struct OwnRows<'a> {
@@ -27,26 +27,3 @@ pub struct Unsolved {
     /// What the engine says.
     pub cause: String,
 }
-
-/// The solver of a matrix; there is none without an engine.
-#[cfg(not(feature = "petsc"))]
-pub enum Engine {}
-
-#[cfg(not(feature = "petsc"))]
-impl Engine {
-    /// x of A x = b, whole on all ranks, and the iterations taken.
-    ///
-    /// # Errors
-    /// Iterations that do not end.
-    pub fn solve(
-        &mut self,
-        _b: &[f64],
-        _x: &mut [f64],
-        _tolerance: f64,
-    ) -> Result<usize, Unsolved> {
-        match *self {}
-    }
-}
-
-#[cfg(feature = "petsc")]
-pub use crate::petsc::Engine;

@@ -7,15 +7,22 @@ mod engine;
 mod link;
 #[cfg(feature = "mpi")]
 mod message_passing;
+#[cfg(not(feature = "petsc"))]
+mod no_engine;
 mod partition;
 #[cfg(feature = "petsc")]
 mod petsc;
 mod threads;
 
-pub use engine::{Engine, OwnRows, Unsolved};
+pub use engine::{OwnRows, Unsolved};
 pub use link::{Message, Ranks};
 pub use partition::partition;
 pub use threads::threads;
+
+#[cfg(not(feature = "petsc"))]
+pub use no_engine::Engine;
+#[cfg(feature = "petsc")]
+pub use petsc::Engine;
 
 #[cfg(feature = "mpi")]
 pub use message_passing::{Session, begin};

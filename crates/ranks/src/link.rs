@@ -4,8 +4,6 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::engine::{Engine, OwnRows};
-
 /// Numbers to or from a rank; their count is known to both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Message {
@@ -126,19 +124,6 @@ impl Ranks {
     /// Whether an engine solves linear equations over these ranks: PETSc, with the feature `petsc`.
     pub fn has_engine(&self) -> bool {
         self.link.as_ref().is_some_and(|link| link.has_engine())
-    }
-
-    /// The engine's solver of a matrix of which each rank gives its rows; none without an engine.
-    ///
-    /// # Errors
-    /// What the engine says.
-    pub fn engine(&self, rows: &OwnRows) -> Result<Option<Engine>, String> {
-        #[cfg(feature = "petsc")]
-        if self.has_engine() {
-            return Engine::new(self, rows).map(Some);
-        }
-        let _ = rows;
-        Ok(None)
     }
 
     /// Where the parts of `count` things begin that ranks share in their order, and their end.

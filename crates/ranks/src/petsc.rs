@@ -144,7 +144,7 @@ impl Engine {
     ///
     /// # Errors
     /// What PETSc says.
-    pub(crate) fn new(ranks: &Ranks, rows: &OwnRows) -> Result<Engine, String> {
+    fn new(ranks: &Ranks, rows: &OwnRows) -> Result<Engine, String> {
         let mut engine = Engine {
             ranks: ranks.clone(),
             starts: rows.starts.to_vec(),
@@ -265,6 +265,18 @@ impl Engine {
             true => Ok(()),
             false => Err(format!("PETSc: reason {reason} of KSPConvergedReason")),
         }
+    }
+}
+
+impl Ranks {
+    /// The engine's solver of a matrix of which each rank gives its rows; none without an engine.
+    ///
+    /// # Errors
+    /// What the engine says.
+    pub fn engine(&self, rows: &OwnRows) -> Result<Option<Engine>, String> {
+        self.has_engine()
+            .then(|| Engine::new(self, rows))
+            .transpose()
     }
 }
 
