@@ -170,8 +170,7 @@ fn write_implicit(folder: &Path) {
             "step = { critical = 0.2 }",
             "step = \"20 us\"\nsolver = \"iterative\"",
         )
-        .replace("scheme.central-difference", "scheme.theta")
-        .replace("neo-hooke", "elastic");
+        .replace("scheme.central-difference", "scheme.theta");
     fs::write(folder.join("case.toml"), text).unwrap();
 }
 
@@ -179,7 +178,8 @@ fn write_implicit(folder: &Path) {
 fn implicit_steps_of_several_processes_give_the_results_of_one() {
     let work = tempfile::tempdir().unwrap();
     write_implicit(work.path());
-    run_alone(work.path(), &[]);
+    let short = ["--set", "time.end=0.8 ms"];
+    run_alone(work.path(), &short);
     // of MPI alone the same bits; of PETSc what its preconditioners leave, which solves end at 1e-12
     let options: &[&str] = match cfg!(feature = "petsc") {
         true => &[
@@ -190,20 +190,16 @@ fn implicit_steps_of_several_processes_give_the_results_of_one() {
         false => &[""],
     };
     for (number, options) in options.iter().enumerate() {
-        for ranks in [2, 4] {
-            let name = format!("{number}-{ranks}");
-            let output = mpirun(
-                work.path(),
-                ranks,
-                &["run", "case.toml", "--results", &name],
-            )
+        let ranks = if number == 0 { 4 } else { 2 };
+        let name = ranks.to_string() + options;
+        let arguments = [&["run", "case.toml", "--results", &name], &short[..]].concat();
+        let output = mpirun(work.path(), ranks, &arguments)
             .env("PETSC_OPTIONS", options)
             .output()
             .unwrap();
-            assert!(output.status.success(), "{}", said(&output));
-            assert_same(&work.path().join("alone"), &work.path().join(&name));
-            assert_eq!(said(&output).matches("each rank computes all").count(), 1);
-        }
+        assert!(output.status.success(), "{}", said(&output));
+        assert_same(&work.path().join("alone"), &work.path().join(&name));
+        assert_eq!(said(&output).matches("each rank computes all").count(), 1);
     }
 }
 
@@ -284,7 +280,7 @@ fn three_processes_go_on_after_one_of_four_was_killed() {
 fn three_processes_go_on_with_implicit_steps_after_one_of_four_was_killed() {
     let work = tempfile::tempdir().unwrap();
     write_implicit(work.path());
-    go_on_after_a_kill(work.path(), "20 ms");
+    go_on_after_a_kill(work.path(), "3 ms");
 }
 
 /// Kills one of four ranks after the first checkpoint; three go on.
