@@ -226,8 +226,7 @@ body.b = { region = "b", material = "m", section.plane-strain.thickness = 1.0, i
             r#"contact.both = {{ secondary = "b", primary = "a", {more}, law.velocity = {{}} }}"#
         )
     };
-    let [mortar, nodes] =
-        ["integration = \"mortar\"", "sliding = \"finite\""].map(|more| both(more));
+    let [mortar, nodes] = ["integration = \"mortar\"", "sliding = \"finite\""].map(both);
     let all = "general-contact = { law.velocity = {} }";
     for (bodies, contact) in [(beams, &*mortar), (beams, &*nodes), (plates, all)] {
         let summary = crossing(bodies, contact, "4 ms");
