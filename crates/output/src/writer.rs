@@ -4,10 +4,18 @@
 //! buffers are out the run waits, so memory is bounded by their number. The error of a buffer comes back with it, at
 //! the next [`Writer::check`], [`Writer::buffer`] or [`Writer::finish`]; the thread then writes nothing more.
 
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, channel, sync_channel};
+use std::sync::mpsc::{
+    Receiver, RecvTimeoutError, SyncSender, TryRecvError, channel, sync_channel,
+};
 use std::thread::{Builder, JoinHandle};
+use std::time::Duration;
+
+use rayon::Yield;
 
 use crate::Error;
+
+/// Time after which a thread that waits looks for its share of work again.
+const IDLE: Duration = Duration::from_millis(1);
 
 /// A thread with the buffers that go to it and come back.
 #[derive(Debug)]
@@ -64,6 +72,23 @@ impl<B: Send + 'static> Writer<B> {
         }
     }
 
+    /// Waits for a buffer. Where this thread is one of those that share the loops over elements, as that of a rank is, the thread of the fields
+    /// may wait for it in turn: it does its share meanwhile.
+    fn receive(&self) -> Result<(B, Result<(), Error>), Error> {
+        loop {
+            let wait = match rayon::yield_now() {
+                None => return self.back.recv().map_err(|_| Error::Writer),
+                Some(Yield::Executed) => Duration::ZERO,
+                Some(Yield::Idle) => IDLE,
+            };
+            match self.back.recv_timeout(wait) {
+                Ok(done) => return Ok(done),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return Err(Error::Writer),
+            }
+        }
+    }
+
     /// A buffer to fill; waits while all are out.
     ///
     /// # Errors
@@ -73,7 +98,7 @@ impl<B: Send + 'static> Writer<B> {
         if let Some(buffer) = self.idle.pop() {
             return Ok(buffer);
         }
-        let (buffer, outcome) = self.back.recv().map_err(|_| Error::Writer)?;
+        let (buffer, outcome) = self.receive()?;
         outcome?;
         Ok(buffer)
     }
@@ -98,7 +123,7 @@ impl<B: Send + 'static> Writer<B> {
     /// As [`Writer::check`].
     pub(crate) fn wait(&mut self, all: usize) -> Result<(), Error> {
         while self.idle.len() < all {
-            let (buffer, outcome) = self.back.recv().map_err(|_| Error::Writer)?;
+            let (buffer, outcome) = self.receive()?;
             self.idle.push(buffer);
             outcome?;
         }
@@ -111,7 +136,10 @@ impl<B: Send + 'static> Writer<B> {
     /// The error of a buffer; [`Error::Writer`] if the thread is gone without one.
     pub(crate) fn finish(&mut self) -> Result<(), Error> {
         self.to = None;
-        let outcomes = self.back.iter().try_for_each(|(_, outcome)| outcome);
+        let mut outcomes = Ok(());
+        while let (Ok(()), Ok((_, outcome))) = (&outcomes, self.receive()) {
+            outcomes = outcome;
+        }
         let ended = self.thread.take().map_or(Ok(()), JoinHandle::join);
         outcomes?;
         ended.map_err(|_| Error::Writer)
@@ -122,6 +150,18 @@ impl<B> Drop for Writer<B> {
     /// Lets the thread end its file.
     fn drop(&mut self) {
         self.to = None;
+        // what it still writes may need this thread
+        while self
+            .thread
+            .as_ref()
+            .is_some_and(|thread| !thread.is_finished())
+        {
+            match rayon::yield_now() {
+                None => break,
+                Some(Yield::Executed) => {}
+                Some(Yield::Idle) => std::thread::sleep(IDLE),
+            }
+        }
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -135,6 +175,29 @@ mod tests {
     use std::sync::mpsc::channel;
 
     use super::*;
+
+    #[test]
+    fn a_thread_that_shares_loops_does_its_share_while_it_waits() {
+        use rayon::prelude::*;
+        // one thread, which is that of the run, as in a rank
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+        let pool = std::sync::Arc::new(pool.build().unwrap());
+        let of_fields = std::sync::Arc::clone(&pool);
+        let ended = pool.install(|| {
+            let mut writer = Writer::start(vec![0], move |n: &i32| {
+                let sum: i32 = of_fields.install(|| (0..100).into_par_iter().map(|k| k + n).sum());
+                assert_eq!(sum, 4950);
+                Ok(())
+            })
+            .unwrap();
+            for _ in 0..3 {
+                let buffer = writer.buffer().unwrap();
+                writer.send(buffer).unwrap();
+            }
+            writer.finish()
+        });
+        ended.unwrap();
+    }
 
     #[test]
     fn the_run_waits_while_both_buffers_are_out() {
