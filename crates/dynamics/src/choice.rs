@@ -73,13 +73,13 @@ pub(crate) fn operator(
         Solver::Direct | Solver::Iterative => None,
     };
     let place = |unknown: usize| system.x[nodes[unknown] as usize];
-    let mut solver = Box::new(Iterative::new(matrix, &groups)?.on(of.ranks, place)?);
+    let mut solver = Iterative::new(matrix, &groups)?;
     match order {
         Some(order) if !pays(&mut solver, (system, of), order.work()) => {
             factor(solver.matrix(), order)
         }
         _ => Ok(Operator::Iterated(Iterated {
-            solver: Some(solver),
+            solver: Some(Box::new(solver.on(of.ranks, place)?)),
             tolerance: TOLERANCE,
             failed: None,
         })),
