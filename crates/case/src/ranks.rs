@@ -47,7 +47,7 @@ pub(crate) fn shared(
         Ok((run, nodes))
     });
     let (mut run, nodes) = together(ranks, begun, Failed::Start)?;
-    run.share(ranks, &nodes);
+    together(ranks, run.share(ranks, &nodes), Failed::Start)?;
     Ok(run)
 }
 
@@ -108,6 +108,7 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
         nodes: most[1] as usize,
         halo_bytes: most[2] as u64,
         sent_bytes: most[3] as u64,
+        shared_nodes: own.shared_nodes,
     }
 }
 

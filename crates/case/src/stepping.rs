@@ -40,11 +40,14 @@ impl Stepping {
     }
 
     /// Shares the run with other ranks; `watched`: nodes whose motion the first rank follows.
-    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &[u32]) {
+    ///
+    /// # Errors
+    /// As [`Driver::share`].
+    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
         match self {
             Stepping::One(driver) => driver.share(ranks, watched),
             // zones that step apart have factors, which ranks do not share
-            Stepping::Apart(_) => {}
+            Stepping::Apart(_) => Ok(()),
         }
     }
 

@@ -239,12 +239,28 @@ fn busiest(share: &RankShare) -> String {
         nodes,
         halo_bytes,
         sent_bytes,
+        shared_nodes: shared,
     } = share;
     if *elements == 0 {
         return format!("ranks: {:.3} MB sent by each", *sent_bytes as f64 / 1e6);
     }
+    let by = match (shared.by_graph, shared.is_by_graph()) {
+        (Some(by_graph), true) => {
+            format!(
+                "Scotch ({by_graph} shared nodes, {} by planes)",
+                shared.by_planes
+            )
+        }
+        (Some(by_graph), false) => {
+            format!(
+                "planes ({} shared nodes, {by_graph} by Scotch)",
+                shared.by_planes
+            )
+        }
+        (None, _) => format!("planes ({} shared nodes)", shared.by_planes),
+    };
     format!(
-        "ranks: at most {elements} elements and {nodes} nodes each, {halo_bytes} bytes sent a step and {:.3} MB in all",
+        "ranks: at most {elements} elements and {nodes} nodes each, shared out by {by}; {halo_bytes} bytes sent a step and {:.3} MB in all",
         *sent_bytes as f64 / 1e6
     )
 }

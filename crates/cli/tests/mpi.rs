@@ -317,3 +317,117 @@ fn go_on_after_a_kill(folder: &Path, end: &str) {
     assert!(output.status.success(), "{}", said(&output));
     assert_same(&folder.join("alone"), &folder.join("case.carom"));
 }
+
+/// A box that falls on its corner, with 12 912 elements, plasticity, friction and contact of all sides with each other, up to the first closings:
+/// the results of one process.
+#[test]
+fn the_drop_test_on_several_processes_gives_the_results_of_one() {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let file = cases.join("drop-test/case.toml");
+    let set = [
+        "mesh.refine=1",
+        "body.walls.mass-scaling.step=0.24 us",
+        "body.corners.mass-scaling.step=0.24 us",
+        "time.end=0.1 ms",
+    ];
+    let work = tempfile::tempdir().unwrap();
+    let run = |ranks: usize| {
+        let results = work.path().join(ranks.to_string());
+        let mut arguments = vec!["run", file.to_str().unwrap(), "--results"];
+        arguments.push(results.to_str().unwrap());
+        arguments.extend(set.iter().flat_map(|key| ["--set", key]));
+        let output = mpirun(work.path(), ranks, &arguments).output().unwrap();
+        let said = said(&output);
+        // a bad verdict is an end too: the run is cut short
+        assert!(results.join("summary.json").is_file(), "{said}");
+        assert_eq!(said.contains("bytes sent a step"), ranks > 1, "{said}");
+        results
+    };
+    let alone = run(1);
+    let forces = rows(&alone);
+    let text = fs::read_to_string(alone.join("histories.csv")).unwrap();
+    let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+    let force = names
+        .iter()
+        .position(|name| name.contains("box") && name.contains("force"));
+    let force = force.unwrap();
+    assert!(forces.iter().any(|row| row[force] > 0.0), "nothing touches");
+    for ranks in [2, 4] {
+        assert_same(&alone, &run(ranks));
+    }
+}
+
+/// A bar along the diagonal of the plane, whose cuts across the axes are longer than those across itself: Scotch's parts share fewer nodes than 0.9 of
+/// those of planes (by the lengths of the cuts 0.71), and are taken.
+#[cfg(feature = "petsc")]
+#[test]
+fn scotch_shares_out_a_bar_that_lies_askew() {
+    let work = tempfile::tempdir().unwrap();
+    fs::write(work.path().join("bar.msh"), diagonal(60, 12)).unwrap();
+    fs::write(work.path().join("case.toml"), DIAGONAL).unwrap();
+    run_alone(work.path(), &[]);
+    for ranks in [2, 3] {
+        let results = ranks.to_string();
+        let run = ["run", "case.toml", "--results", &results];
+        let output = mpirun(work.path(), ranks, &run).output().unwrap();
+        let said = said(&output);
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains("shared out by Scotch"), "{said}");
+        assert_same(&work.path().join("alone"), &work.path().join(&results));
+    }
+}
+
+#[cfg(feature = "petsc")]
+const DIAGONAL: &str = r#"
+carom = 1
+[mesh]
+file = "bar.msh"
+[material.soft]
+density = 1000.0
+neo-hooke = { young = "5 MPa", poisson = 0.3 }
+[body.bar]
+region = "bar"
+material = "soft"
+section.plane-strain = { thickness = "10 mm" }
+initial = { velocity = [-2.0, -2.0] }
+[contact.wall]
+secondary = "end"
+obstacle.plane = { point = [-0.001, -0.001], normal = [1.0, 1.0] }
+law.velocity = {}
+[time]
+end = "4 ms"
+step = { critical = 0.5 }
+scheme.central-difference = {}
+"#;
+
+/// A mesh of so many squares of 10 mm along the diagonal and across it; its lower left end is a group.
+#[cfg(feature = "petsc")]
+fn diagonal(along: usize, across: usize) -> String {
+    let mut text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 1 \"end\"\n2 2 \"bar\"\n$EndPhysicalNames\n".to_owned();
+    text += &format!("$Nodes\n{}\n", (along + 1) * (across + 1));
+    let number = |i: usize, j: usize| j * (along + 1) + i + 1;
+    for j in 0..=across {
+        for i in 0..=along {
+            let [s, t] = [i, j].map(|k| 0.01 * k as f64 / 2f64.sqrt());
+            text += &format!("{} {} {} 0\n", number(i, j), s - t, s + t);
+        }
+    }
+    text += &format!("$EndNodes\n$Elements\n{}\n", across + along * across);
+    for j in 0..across {
+        text += &format!("{} 1 2 1 1 {} {}\n", j + 1, number(0, j + 1), number(0, j));
+    }
+    for j in 0..across {
+        for i in 0..along {
+            let corners = [
+                number(i, j),
+                number(i + 1, j),
+                number(i + 1, j + 1),
+                number(i, j + 1),
+            ];
+            let [a, b, c, d] = corners;
+            let element = across + j * along + i + 1;
+            text += &format!("{element} 3 2 2 2 {a} {b} {c} {d}\n");
+        }
+    }
+    text + "$EndElements\n"
+}

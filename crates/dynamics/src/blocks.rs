@@ -10,7 +10,7 @@ use crate::resultant::Resultant;
 use crate::system::System;
 
 /// Nodes of a block, at most: what it reads and writes stays in the nearest cache.
-const NODES: usize = 128;
+pub(crate) const NODES: usize = 128;
 
 /// Lanes: a multiple of one, two and three components, and of the width of the processor's registers.
 pub(crate) const LANES: usize = 24;
@@ -23,12 +23,116 @@ pub(crate) fn pattern(dim: usize, w: &[f64; 3]) -> [f64; LANES] {
     std::array::from_fn(|k| w[k % dim])
 }
 
-/// Nodes of one connected part that follow each other.
+/// Nodes of one connected part, ascending.
+#[derive(Clone, Debug)]
+pub(crate) enum Nodes {
+    /// That follow each other: the first one, and one end more.
+    Run([usize; 2]),
+    /// Several such runs.
+    Runs(Runs),
+}
+
+/// Runs of nodes: the first one of each, and one end more; and what is always the same of the nodes, so that it lies together.
+#[derive(Clone, Debug)]
+pub(crate) struct Runs {
+    pub(crate) runs: Vec<[usize; 2]>,
+    /// Whether each unknown is held.
+    pub(crate) fixed: Vec<bool>,
+    /// Mass of each node, kg.
+    pub(crate) mass: Vec<f64>,
+    /// Place of each node in the reference configuration, m.
+    pub(crate) x: Vec<[f64; 3]>,
+}
+
+impl Runs {
+    /// Takes the entries of the nodes from a system vector, `dim` of each.
+    #[inline(always)]
+    pub(crate) fn pick<T: Copy>(&self, dim: usize, vector: &[T], out: &mut [T]) {
+        let mut at = 0;
+        for run in &self.runs {
+            let [first, last] = run.map(|node| dim * node);
+            copy(dim, &vector[first..last], &mut out[at..at + last - first]);
+            at += last - first;
+        }
+    }
+
+    /// The reverse, into a vector that begins with the unknowns of the node `origin`.
+    #[inline(always)]
+    pub(crate) fn place(&self, (dim, origin): (usize, usize), values: &[f64], vector: &mut [f64]) {
+        let mut at = 0;
+        for run in &self.runs {
+            let [first, last] = run.map(|node| dim * (node - origin));
+            copy(
+                dim,
+                &values[at..at + last - first],
+                &mut vector[first..last],
+            );
+            at += last - first;
+        }
+    }
+}
+
+/// Copies the unknowns of some nodes; those of a single node, of which unstructured meshes have many, without a call.
+#[inline(always)]
+fn copy<T: Copy>(dim: usize, from: &[T], to: &mut [T]) {
+    match (from, &mut *to, dim) {
+        ([x, y, z], [to_x, to_y, to_z], 3) => (*to_x, *to_y, *to_z) = (*x, *y, *z),
+        ([x, y], [to_x, to_y], 2) => (*to_x, *to_y) = (*x, *y),
+        _ => to.copy_from_slice(from),
+    }
+}
+
+impl Nodes {
+    /// Of nodes, of which there is one at least.
+    fn of(system: &System, nodes: &[u32]) -> Nodes {
+        let dim = system.dim;
+        let follow = nodes.chunk_by(|one, next| *next == one + 1);
+        let ends = |run: &[u32]| [run[0] as usize, run[0] as usize + run.len()];
+        let runs: Vec<[usize; 2]> = follow.map(ends).collect();
+        if let [run] = runs[..] {
+            return Nodes::Run(run);
+        }
+        let all = || nodes.iter().map(|node| *node as usize);
+        Nodes::Runs(Runs {
+            fixed: all()
+                .flat_map(|node| system.fixed[dim * node..][..dim].to_vec())
+                .collect(),
+            mass: all().map(|node| system.mass.lumped[dim * node]).collect(),
+            x: all().map(|node| system.x[node]).collect(),
+            runs,
+        })
+    }
+
+    fn runs(&self) -> &[[usize; 2]] {
+        match self {
+            Nodes::Run(run) => std::slice::from_ref(run),
+            Nodes::Runs(runs) => &runs.runs,
+        }
+    }
+
+    /// The first of them.
+    pub(crate) fn first(&self) -> usize {
+        self.runs()[0][0]
+    }
+
+    pub(crate) fn contain(&self, node: usize) -> bool {
+        let mut runs = self.runs().iter();
+        runs.any(|[first, last]| (*first..*last).contains(&node))
+    }
+
+    /// Writes zeros for their unknowns.
+    pub(crate) fn clear(&self, dim: usize, vector: &mut [f64]) {
+        for [first, last] in self.runs() {
+            vector[dim * first..dim * last].fill(0.0);
+        }
+    }
+}
+
+/// Nodes of one connected part.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    /// First node, and one end more.
-    pub(crate) nodes: [usize; 2],
-    /// Its part.
+    pub(crate) nodes: Nodes,
+    /// Their part.
     pub(crate) part: usize,
     /// Whether any of their unknowns is held.
     pub(crate) held: bool,
@@ -39,13 +143,15 @@ pub(crate) struct Block {
 }
 
 impl Block {
-    /// Of nodes that follow each other in a part; whether they count.
-    fn new(system: &System, [first, last]: [usize; 2], part: usize, counts: bool) -> Block {
+    /// Of nodes of a part; whether they count.
+    fn new(system: &System, nodes: Nodes, part: usize, counts: bool) -> Block {
         let dim = system.dim;
+        let held =
+            |[first, last]: &[usize; 2]| system.fixed[dim * first..dim * last].contains(&true);
         Block {
-            nodes: [first, last],
             part,
-            held: system.fixed[dim * first..dim * last].contains(&true),
+            held: nodes.runs().iter().any(held),
+            nodes,
             touched: [true; 2],
             counts,
         }
@@ -59,33 +165,33 @@ pub(crate) fn blocks(system: &System) -> Vec<Block> {
         let (begin, end) = (unknowns.start / dim, unknowns.end / dim);
         (begin..end).step_by(NODES).map(move |first| {
             let last = end.min(first + NODES);
-            Block::new(system, [first, last], part, true)
+            Block::new(system, Nodes::Run([first, last]), part, true)
         })
     };
     system.parts.iter().enumerate().flat_map(of_part).collect()
 }
 
-/// The blocks of some nodes, ascending, of such a system; `counts`: whether the sums of a node are taken.
+/// The blocks of some nodes, ascending, of such a system; `counts`: whether the sums of a node are taken. Those of nodes that count come first.
 pub(crate) fn blocks_of(
     system: &System,
     nodes: &[u32],
     counts: &dyn Fn(usize) -> bool,
 ) -> Vec<Block> {
-    let (dim, mut blocks) = (system.dim, Vec::new());
-    let mut rest = nodes;
-    while let Some(&first) = rest.first() {
-        let first = first as usize;
-        let (part, counted) = (system.part_of(dim * first), counts(first));
-        let end = system.parts[part].end / dim;
-        let follows = |&(k, &node): &(usize, &u32)| {
-            let node = node as usize;
-            node == first + k && node < end && k < NODES && counts(node) == counted
-        };
-        let length = rest.iter().enumerate().take_while(follows).count();
-        blocks.push(Block::new(system, [first, first + length], part, counted));
-        rest = &rest[length..];
-    }
-    blocks
+    let of_kind = |counted: bool| {
+        let own = nodes.iter().copied();
+        let own: Vec<u32> = own
+            .filter(|node| counts(*node as usize) == counted)
+            .collect();
+        let part = |node: u32| system.part_of(system.dim * node as usize);
+        let mut blocks = Vec::new();
+        for of_part in own.chunk_by(|one, other| part(*one) == part(*other)) {
+            let part = part(of_part[0]);
+            let of_block = |nodes| Block::new(system, Nodes::of(system, nodes), part, counted);
+            blocks.extend(of_part.chunks(NODES).map(of_block));
+        }
+        blocks
+    };
+    [true, false].map(of_kind).concat()
 }
 
 /// A vector of the unknowns of a block; zero behind them.

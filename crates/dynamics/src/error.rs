@@ -220,6 +220,9 @@ pub enum Error {
     /// A stepper of another crate failed.
     #[error(transparent)]
     Stepper(Box<dyn std::error::Error + Send + Sync>),
+    /// The library that shares out the elements does not.
+    #[error("elements are not shared out over the ranks: {0}")]
+    Partition(String),
     /// An observer failed: the results could not be written.
     #[error("{0}")]
     Observer(#[source] Box<dyn std::error::Error + Send + Sync>),

@@ -3,115 +3,21 @@
 //! A vector is read once. Sums are those of blocks of nodes that follow each other, added in their order, so that their bits are the
 //! same for any number of threads. Within a block unknowns are added in eight lanes.
 
+mod sums;
+
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::blocks::{self, Block, Buffer, pattern};
-use crate::resultant::Resultant;
+use crate::blocks::{self, Block, Buffer, NODES, Nodes, Runs, pattern};
 use crate::step_map::Row;
 use crate::system::System;
+pub(crate) use sums::Sums;
 
 /// Blocks that one thread takes, at least.
 const PANEL: usize = 16;
 /// Lanes in which the unknowns of a block are added.
 const LANES: usize = 8;
-
-/// Sums over nodes in a step from `u` to u₊ on the way Δu = u₊ - u.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sums {
-    /// |v₊|²_M.
-    pub(crate) velocity: f64,
-    /// |a|²_M at start and end.
-    pub(crate) acceleration: [f64; 2],
-    /// Works on Δu of the means of the forces: inertia, internal forces, loads, contacts, damping; J.
-    pub(crate) works: [f64; 5],
-    /// |Δu|².
-    pub(crate) way: f64,
-    /// Squares of the forces of the end, in the order of the works without damping, and of the momentum M v at the start.
-    pub(crate) squares: [f64; 5],
-    /// M v₊.
-    pub(crate) momentum: Resultant,
-    /// Means of loads, contact forces, reactions of the supports, and damping.
-    pub(crate) forces: [Resultant; 4],
-    /// Sums of the forces of the end: loads less damping with the reactions to all but contacts, and the reactions to contacts.
-    pub(crate) outside: [[f64; 3]; 2],
-    /// Largest |v₊ - w|² of a node.
-    pub(crate) fastest: f64,
-}
-
-impl Sums {
-    /// Adds those of other nodes.
-    pub(crate) fn add(&mut self, other: &Sums) {
-        self.velocity += other.velocity;
-        self.way += other.way;
-        let pairs = self.acceleration.iter_mut().zip(other.acceleration);
-        let pairs = pairs.chain(self.works.iter_mut().zip(other.works));
-        let pairs = pairs.chain(self.squares.iter_mut().zip(other.squares));
-        for (sum, term) in pairs {
-            *sum += term;
-        }
-        self.momentum = self.momentum.plus(&other.momentum);
-        for (sum, term) in self.forces.iter_mut().zip(&other.forces) {
-            *sum = sum.plus(term);
-        }
-        let outside = self.outside.iter_mut().flatten();
-        for (sum, term) in outside.zip(other.outside.iter().flatten()) {
-            *sum += term;
-        }
-        self.fastest = self.fastest.max(other.fastest);
-    }
-
-    /// All sums but the largest.
-    pub(crate) fn numbers(&self) -> impl Iterator<Item = f64> {
-        let mut all = *self;
-        let mut numbers = [0.0; 50];
-        let mut out = numbers.iter_mut();
-        all.each(&mut |number| {
-            if let Some(out) = out.next() {
-                *out = *number;
-            }
-        });
-        numbers.into_iter()
-    }
-
-    /// Replaces all sums but the largest, in the order of [`Sums::numbers`].
-    pub(crate) fn take(&mut self, next: &mut impl FnMut() -> f64) {
-        self.each(&mut |number| *number = next());
-    }
-
-    fn each(&mut self, visit: &mut impl FnMut(&mut f64)) {
-        let Sums {
-            velocity,
-            acceleration,
-            works,
-            way,
-            squares,
-            momentum,
-            forces,
-            outside,
-            fastest: _,
-        } = self;
-        visit(velocity);
-        visit(way);
-        let lists = acceleration.iter_mut().chain(works).chain(squares);
-        lists.for_each(&mut *visit);
-        for resultant in forces.iter_mut().chain([momentum]) {
-            let entries = resultant.linear.iter_mut().chain(&mut resultant.angular);
-            entries.for_each(&mut *visit);
-        }
-        outside.iter_mut().flatten().for_each(visit);
-    }
-
-    /// Leaves out what is no force in an axisymmetric system.
-    pub(crate) fn of_axisymmetric(&mut self) {
-        let resultants = self.forces.iter_mut().chain([&mut self.momentum]);
-        for resultant in resultants {
-            resultant.linear[0] = 0.0;
-            resultant.angular = [0.0; 3];
-        }
-    }
-}
 
 /// A force at the start and at the end of the step: vectors, N, with a factor each.
 pub(crate) type Ends<'a> = [(&'a [f64], f64); 2];
@@ -155,16 +61,21 @@ type End<'a> = [&'a mut [f64]; 3];
 impl Update<'_> {
     /// Writes velocities and accelerations of the end and the displacement ahead, and the sums of each block.
     pub(crate) fn run(&self, blocks: &[Block], sums: &mut [Sums], out: End) {
-        self.panel(blocks, sums, (0, out));
+        let counted = blocks.partition_point(|block| block.counts);
+        let (own, others) = blocks.split_at(counted);
+        let (of_own, of_others) = sums.split_at_mut(counted);
+        let [ahead, v, a] = out;
+        self.panel(own, of_own, (0, [&mut *ahead, &mut *v, &mut *a]));
+        self.panel(others, of_others, (0, [ahead, v, a]));
     }
 
-    /// The same for some of the blocks; the vectors begin at the unknown `origin`.
+    /// The same for some of the blocks, ascending; the vectors begin at the node `origin`.
     fn panel(&self, blocks: &[Block], sums: &mut [Sums], (origin, out): (usize, End)) {
         if blocks.len() >= 2 * PANEL {
             let (before, after) = blocks.split_at(blocks.len() / 2);
             let (sums, rest) = sums.split_at_mut(before.len());
-            let border = self.system.dim * after[0].nodes[0];
-            let [one, two, three] = out.map(|vector| vector.split_at_mut(border - origin));
+            let (dim, border) = (self.system.dim, after[0].nodes.first());
+            let [one, two, three] = out.map(|vector| vector.split_at_mut(dim * (border - origin)));
             rayon::join(
                 || self.panel(before, sums, (origin, [one.0, two.0, three.0])),
                 || self.panel(after, rest, (border, [one.1, two.1, three.1])),
@@ -194,29 +105,28 @@ impl WithSimd for Panel<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let dim = self.update.system.dim;
+        let (dim, origin) = (self.update.system.dim, self.origin);
         let [ahead, v, a] = self.out;
-        let mut buffers = Buffers::default();
+        let (mut buffers, mut room) = (Buffers::default(), [[0.0; 3 * NODES]; 11]);
+        let mut written = [[0.0; 3 * NODES]; 3];
         for (block, sums) in self.blocks.iter().zip(self.sums) {
-            let [first, last] = block.nodes.map(|node| dim * node);
-            let range = first - self.origin..last - self.origin;
-            let out = [
-                &mut ahead[range.clone()],
-                &mut v[range.clone()],
-                &mut a[range],
-            ];
             *sums = Sums::default();
-            let (update, buffers) = (&self.update, &mut buffers);
-            let touched = block.touched != [false; 2];
-            let damped = update.damping.is_some();
-            let of = (block, buffers);
-            match (update.load.is_some(), damped, touched) {
-                (false, _, false) => update.block::<false, false, false>(of, sums, out),
-                (false, _, true) => update.block::<false, false, true>(of, sums, out),
-                (true, false, false) => update.block::<true, false, false>(of, sums, out),
-                (true, false, true) => update.block::<true, false, true>(of, sums, out),
-                (true, true, false) => update.block::<true, true, false>(of, sums, out),
-                (true, true, true) => update.block::<true, true, true>(of, sums, out),
+            let of = (block, &mut buffers);
+            match &block.nodes {
+                Nodes::Run(nodes) => {
+                    let [first, last] = nodes.map(|node| dim * (node - origin));
+                    let out = [&mut *ahead, &mut *v, &mut *a].map(|all| &mut all[first..last]);
+                    self.update.any(of, &self.update.run_of(*nodes), sums, out);
+                }
+                Nodes::Runs(nodes) => {
+                    let out = written.each_mut().map(|all| &mut all[..nodes.fixed.len()]);
+                    let touched = block.touched != [false; 2];
+                    let within = self.update.runs_of((nodes, touched), &mut room);
+                    self.update.any(of, &within, sums, out);
+                    for (all, own) in [&mut *ahead, &mut *v, &mut *a].into_iter().zip(&written) {
+                        nodes.place((dim, origin), own, all);
+                    }
+                }
             }
         }
     }
@@ -232,7 +142,13 @@ struct Within<'a> {
     load: Ends<'a>,
     damping: Ends<'a>,
     contact: Ends<'a>,
+    /// Mass and place of each node.
+    mass: &'a [f64],
+    x: &'a [[f64; 3]],
 }
+
+/// Room for the vectors of nodes that do not all follow each other.
+type Room = [[f64; 3 * NODES]; 11];
 
 /// What a block keeps between its loops.
 #[derive(Default)]
@@ -329,16 +245,12 @@ fn put(vector: &mut [f64], first: usize, values: &[f64; LANES]) {
 }
 
 impl Update<'_> {
+    /// What nodes that follow each other read.
     #[inline(always)]
-    fn block<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
-        &self,
-        (block, buffers): (&Block, &mut Buffers),
-        sums: &mut Sums,
-        out: End,
-    ) {
-        let (dim, [first, last]) = (self.system.dim, block.nodes);
+    fn run_of(&self, [first, last]: [usize; 2]) -> Within<'_> {
+        let dim = self.system.dim;
         let range = dim * first..dim * last;
-        let within = Within {
+        Within {
             u: &self.u[range.clone()],
             f: self.f.map(|f| &f[range.clone()]),
             v: &self.v[range.clone()],
@@ -347,18 +259,79 @@ impl Update<'_> {
             load: within(&self.load, &range),
             damping: within(&self.damping, &range),
             contact: self.contact.map(|forces| (&forces[range.clone()], 1.0)),
+            mass: &self.mass[first..last],
+            x: &self.system.x[first..last],
+        }
+    }
+
+    /// What others read.
+    #[inline(always)]
+    fn runs_of<'a>(&self, (nodes, touched): (&'a Runs, bool), room: &'a mut Room) -> Within<'a> {
+        let (dim, n) = (self.system.dim, nodes.fixed.len());
+        let mut rooms = room.iter_mut();
+        let mut pick = |vector: &[f64]| -> &'a [f64] {
+            let Some(room) = rooms.next() else {
+                return &[];
+            };
+            nodes.pick(dim, vector, room);
+            &room[..n]
         };
-        buffers.end(range.len());
-        buffers.mass.spread(dim, &self.mass[first..last]);
-        buffers.place.fill(dim, &self.system.x[first..last]);
+        let mut ends = |ends: &Option<Ends>| match ends {
+            Some(ends) => ends.map(|(force, factor)| (pick(force), factor)),
+            None => [(&[][..], 0.0); 2],
+        };
+        let (load, damping) = (ends(&self.load), ends(&self.damping));
+        Within {
+            u: pick(self.u),
+            f: self.f.map(&mut pick),
+            v: pick(self.v),
+            a: pick(self.a),
+            fixed: &nodes.fixed,
+            load,
+            damping,
+            contact: match touched {
+                true => self.contact.map(|forces| (pick(forces), 1.0)),
+                false => [(&[], 0.0); 2],
+            },
+            mass: &nodes.mass,
+            x: &nodes.x,
+        }
+    }
+
+    /// A block with what there is on it.
+    #[inline(always)]
+    fn any(&self, of: (&Block, &mut Buffers), within: &Within, sums: &mut Sums, out: End) {
+        let touched = of.0.touched != [false; 2];
+        match (self.load.is_some(), self.damping.is_some(), touched) {
+            (false, _, false) => self.block::<false, false, false>(of, within, sums, out),
+            (false, _, true) => self.block::<false, false, true>(of, within, sums, out),
+            (true, false, false) => self.block::<true, false, false>(of, within, sums, out),
+            (true, false, true) => self.block::<true, false, true>(of, within, sums, out),
+            (true, true, false) => self.block::<true, true, false>(of, within, sums, out),
+            (true, true, true) => self.block::<true, true, true>(of, within, sums, out),
+        }
+    }
+
+    #[inline(always)]
+    fn block<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
+        &self,
+        (block, buffers): (&Block, &mut Buffers),
+        within: &Within,
+        sums: &mut Sums,
+        out: End,
+    ) {
+        let (dim, n) = (self.system.dim, within.u.len());
+        buffers.end(n);
+        buffers.mass.spread(dim, within.mass);
+        buffers.place.fill(dim, within.x);
         let w = pattern(dim, &self.reference[block.part]);
         let moves = self.moves && !self.system.undeformed[block.part];
         let [ahead, v1, a1] = out;
         let out = [ahead, v1, &mut *a1];
-        self.move_on::<LOADED, DAMPED, TOUCHED>((&within, &w, moves), (buffers, sums), out);
-        self.resultants::<LOADED, DAMPED, TOUCHED>(range.len(), buffers, sums);
+        self.move_on::<LOADED, DAMPED, TOUCHED>((within, &w, moves), (buffers, sums), out);
+        self.resultants::<LOADED, DAMPED, TOUCHED>(n, buffers, sums);
         if block.held {
-            self.reactions::<LOADED, DAMPED, TOUCHED>((&within, moves), (buffers, sums), a1);
+            self.reactions::<LOADED, DAMPED, TOUCHED>((within, moves), (buffers, sums), a1);
         }
     }
 

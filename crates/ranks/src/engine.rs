@@ -1,4 +1,4 @@
-//! What an engine of the ranks, which solves linear equations, is given and tells.
+//! What an engine of the ranks, which solves linear equations and shares out elements, is given and tells.
 
 /// Rows of a symmetric positive definite matrix that ranks share.
 pub struct OwnRows<'a> {
@@ -26,4 +26,16 @@ pub struct Unsolved {
     pub residual: f64,
     /// What the engine says.
     pub cause: String,
+}
+
+/// Elements that are to be shared out, which of them have a face in common, and what each costs.
+pub struct Graph {
+    /// Where the elements of each rank's rows begin, and their end.
+    pub starts: Vec<usize>,
+    /// Where the neighbours of each of the own elements begin, and their end.
+    pub offsets: Vec<i32>,
+    /// Neighbours of the own elements, ascending for each.
+    pub neighbours: Vec<i32>,
+    /// Cost of each own element.
+    pub weights: Vec<i32>,
 }

@@ -12,9 +12,11 @@ mod no_engine;
 mod partition;
 #[cfg(feature = "petsc")]
 mod petsc;
+#[cfg(feature = "petsc")]
+mod scotch;
 mod threads;
 
-pub use engine::{OwnRows, Unsolved};
+pub use engine::{Graph, OwnRows, Unsolved};
 pub use link::{Message, Ranks};
 pub use partition::partition;
 pub use threads::threads;

@@ -1,6 +1,6 @@
 //! Ranks without an engine.
 
-use crate::engine::{OwnRows, Unsolved};
+use crate::engine::{Graph, OwnRows, Unsolved};
 use crate::link::Ranks;
 
 /// The solver of a matrix; there is none without an engine.
@@ -27,6 +27,14 @@ impl Ranks {
     /// # Errors
     /// What the engine says.
     pub fn engine(&self, _rows: &OwnRows) -> Result<Option<Engine>, String> {
+        Ok(None)
+    }
+
+    /// The part of each element by the engine, in which elements of different parts share few faces; none without an engine.
+    ///
+    /// # Errors
+    /// What the engine says.
+    pub fn parts_of_graph(&self, _graph: &Graph) -> Result<Option<Vec<u32>>, String> {
         Ok(None)
     }
 }

@@ -1,4 +1,4 @@
-//! Solves with PETSc (Balay et al., PETSc/TAO Users Manual). Nothing else names it.
+//! Solves with PETSc (Balay et al., PETSc/TAO Users Manual). Nothing names it but this and `scotch`.
 //!
 //! Conjugate gradients with the blocks of nodes as preconditioner, or what `PETSC_OPTIONS` says: `-pc_type gamg` is algebraic multigrid
 //! with the rigid motions of the nodes, `-pc_type cholesky -pc_factor_mat_solver_type mumps` a factor over all ranks.
@@ -16,11 +16,11 @@ use mpi::ffi::MPI_Comm;
 use crate::engine::{OwnRows, Unsolved};
 use crate::link::Ranks;
 
-type Handle = *mut c_void;
-type Code = c_int;
+pub(crate) type Handle = *mut c_void;
+pub(crate) type Code = c_int;
 
 unsafe extern "C" {
-    static PETSC_COMM_WORLD: MPI_Comm;
+    pub(crate) static PETSC_COMM_WORLD: MPI_Comm;
     fn PetscOptionsSetValue(options: Handle, name: *const c_char, value: *const c_char) -> Code;
     fn PetscInitializeNoArguments() -> Code;
     fn PetscFinalize() -> Code;
@@ -43,7 +43,7 @@ unsafe extern "C" {
     fn MatNullSpaceCreateRigidBody(places: Handle, space: *mut Handle) -> Code;
     fn MatNullSpaceDestroy(space: *mut Handle) -> Code;
     fn MatCreateVecs(matrix: Handle, right: *mut Handle, left: *mut Handle) -> Code;
-    fn MatDestroy(matrix: *mut Handle) -> Code;
+    pub(crate) fn MatDestroy(matrix: *mut Handle) -> Code;
     fn VecGetArray(vector: Handle, values: *mut *mut f64) -> Code;
     fn VecRestoreArray(vector: Handle, values: *mut *mut f64) -> Code;
     fn VecSetBlockSize(vector: Handle, size: c_int) -> Code;
@@ -108,7 +108,7 @@ impl Drop for Library {
 }
 
 /// The error that a code tells.
-fn told(code: Code) -> Result<(), String> {
+pub(crate) fn told(code: Code) -> Result<(), String> {
     if code == 0 {
         return Ok(());
     }

@@ -7,7 +7,6 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, Kinematics, Reduced, Rigid};
 use carom_contact::{Contact, Frames, Places};
-use carom_mesh::Parts;
 use carom_schemes::Scheme;
 
 use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
@@ -17,11 +16,12 @@ use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::massless::redistribute;
-use crate::middles::{Carried, add_middles};
+use crate::middles::add_middles;
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
 use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
+use crate::numbering::numbering;
 use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::system::{System, part_of};
@@ -303,68 +303,6 @@ fn undeformed(bodies: &[Body], part_of_body: &[usize], parts: usize) -> Vec<bool
             && own().all(|(body, _)| body.has_small_displacements() || body.as_discrete().is_some())
     };
     (0..parts).map(of_part).collect()
-}
-
-/// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts. `centres`: nodes of
-/// the rigid bodies.
-fn numbering(
-    model: &Model,
-    centres: &[Option<u32>],
-    carried: &[Carried],
-) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
-    let count = model.mesh.nodes.len();
-    let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
-    let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
-    let mut joined = Parts::new(&model.mesh, cells.chain(discrete).copied());
-    // a body of several pieces is in one part: its tangents and the momentum that its contacts give it are those of a body
-    for body in &model.bodies {
-        let cells = body.spec.cells.iter();
-        let nodes: Vec<u32> = cells
-            .map(|&cell| model.mesh.element_nodes(cell)[0])
-            .collect();
-        joined.join(&nodes);
-    }
-    if model.nonlinear.preload.is_some() && !model.mixes_schemes() {
-        // a static stage has no mass that would hold what only constraints hold, and takes their rows into the matrix of the part
-        for row in model.constraints.iter().flat_map(|some| &some.rows) {
-            let nodes: Vec<u32> = row.iter().map(|(node, ..)| *node).collect();
-            joined.join(&nodes);
-        }
-        for row in model.links.iter().flat_map(|some| &some.rows) {
-            let terms = row.inner.iter().chain(&row.outer);
-            let nodes: Vec<u32> = terms.map(|term| term.node).collect();
-            joined.join(&nodes);
-        }
-    }
-    // parts come in the order of their first node, which leads
-    let mut nodes: Vec<(u32, u32)> = (0..count as u32)
-        .filter_map(|node| Some((joined.of(node)?, node)))
-        .collect();
-    for (body, centre) in model.bodies.iter().zip(centres) {
-        let first = body.spec.cells.first();
-        let first = first.map(|&cell| model.mesh.element_nodes(cell)[0]);
-        if let Some(centre) = *centre {
-            let leader = first.and_then(|node| joined.of(node)).unwrap_or(centre);
-            nodes.push((leader, centre));
-        }
-    }
-    let with = |own: &Carried| Some((joined.of(own.by)?, own.node));
-    nodes.extend(carried.iter().filter_map(with));
-    nodes.sort_unstable();
-    let mut number = vec![u32::MAX; count];
-    let mut parts: Vec<Range<usize>> = Vec::new();
-    for (system, &(leader, node)) in nodes.iter().enumerate() {
-        number[node as usize] = system as u32;
-        match parts.last_mut() {
-            Some(part) if nodes[part.start].0 == leader => part.end = system + 1,
-            _ => parts.push(system..system + 1),
-        }
-    }
-    (
-        number,
-        nodes.into_iter().map(|(_, node)| node).collect(),
-        parts,
-    )
 }
 
 /// The place nearest to zero in the box around some places, m.

@@ -27,6 +27,7 @@ mod needs_factor;
 mod nonlinear;
 mod numbered;
 mod numbered_loads;
+mod numbering;
 mod refused;
 mod reported;
 mod rigid;

@@ -372,7 +372,7 @@ fn sent(height: &str, steps: u64) -> Vec<[f64; 2]> {
     on_all(4, |ranks| {
         let (_, _, built) = built(&text);
         let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
-        driver.share(ranks, &[]);
+        driver.share(ranks, &[]).unwrap();
         let before = driver.rank_share().unwrap();
         (0..steps).for_each(|_| driver.step().unwrap());
         let sent = driver.rank_share().unwrap().sent_bytes - before.sent_bytes;

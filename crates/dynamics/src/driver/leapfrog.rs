@@ -122,17 +122,23 @@ impl Direct {
                 block.touched = [true; 2];
             }
             if std::mem::take(&mut block.touched[1]) {
-                forces[dim * block.nodes[0]..dim * block.nodes[1]].fill(0.0);
+                block.nodes.clear(dim, forces);
             }
         }
     }
 
     /// Tells that there is a contact force on a node at the end of the step.
     pub(super) fn touch(&mut self, node: usize) {
-        let holds = |block: &Block| (block.nodes[0]..block.nodes[1]).contains(&node);
+        let holds = |block: &Block| block.nodes.contain(node);
         if !self.blocks.get(self.last).is_some_and(holds) {
-            let behind = self.blocks.partition_point(|block| block.nodes[0] <= node);
-            self.last = behind.saturating_sub(1);
+            // those whose sums count are ascending, and the others behind them
+            let counted = self.blocks.partition_point(|block| block.counts);
+            let (own, others) = self.blocks.split_at(counted);
+            let of = |blocks: &[Block]| blocks.partition_point(|block| block.nodes.first() <= node);
+            self.last = of(own).saturating_sub(1);
+            if !own.get(self.last).is_some_and(holds) {
+                self.last = counted + of(others).saturating_sub(1);
+            }
         }
         if let Some(block) = self.blocks.get_mut(self.last) {
             block.touched[1] = true;

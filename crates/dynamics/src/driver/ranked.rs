@@ -14,7 +14,7 @@ use super::Driver;
 use super::leapfrog::Direct;
 use crate::error::Error;
 use crate::march::Going;
-use crate::shared::{Shared, Told, parts};
+use crate::shared::{Shared, SharedNodes, Told, partition_of};
 use crate::update::Sums;
 
 /// What one of several ranks has of a run, and sends to others.
@@ -28,6 +28,8 @@ pub struct RankShare {
     pub halo_bytes: u64,
     /// Bytes that it has sent so far: with what the first rank is given where impacts begin or end, and where somebody looks.
     pub sent_bytes: u64,
+    /// Nodes that ranks share in all, by both ways of sharing out the elements.
+    pub shared_nodes: SharedNodes,
 }
 
 impl Driver {
@@ -35,21 +37,26 @@ impl Driver {
     /// ([`why_not_on_ranks`](crate::why_not_on_ranks)); of others the products of iterations, while each rank takes all of the step
     /// ([`Alike`](crate::Alike)). `watched`: nodes (system numbers) whose motion the first rank is to have after each step; all ranks ask
     /// together.
-    pub fn share(&mut self, ranks: &Ranks, watched: &[u32]) {
+    ///
+    /// # Errors
+    /// [`Error::Partition`].
+    pub fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
         if ranks.count() == 1 {
-            return;
+            return Ok(());
         }
         let system = Arc::clone(&self.system);
         let shares = super::unfit::why_not_on_ranks(&system).is_none();
         let Some(direct) = self.direct.as_mut().filter(|_| shares) else {
-            return self.effective.share(ranks);
+            self.effective.share(ranks);
+            return Ok(());
         };
-        let elements = parts(&system, ranks.count());
+        let elements = partition_of(&system, ranks)?;
         let shared = Shared::new(&system, ranks, (watched, elements));
         direct.blocks = shared.blocks(&system);
         direct.sums = vec![Sums::default(); direct.blocks.len()];
         self.shared = Some(Box::new(shared));
         self.several = true;
+        Ok(())
     }
 
     /// Whether several ranks take the steps.
@@ -66,6 +73,7 @@ impl Driver {
             nodes: shared.halo.present.len(),
             halo_bytes: shared.halo.bytes(self.system.dim, shared.ranks.rank()),
             sent_bytes: shared.ranks.sent_bytes(),
+            shared_nodes: shared.shared_nodes,
         })
     }
 
@@ -126,8 +134,7 @@ impl Driver {
         self.force_sweeps += 1;
         let dim = self.system.dim;
         for block in &direct.blocks {
-            let range = dim * block.nodes[0]..dim * block.nodes[1];
-            self.next.motion.internal_force[range].fill(0.0);
+            block.nodes.clear(dim, &mut self.next.motion.internal_force);
         }
         let motions = (&self.state.motion, &mut self.next.motion, self.dt);
         let stored = shared.forces(&self.system, motions);

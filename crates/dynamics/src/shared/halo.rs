@@ -159,14 +159,30 @@ pub(crate) fn messages(lists: &[With], numbers: usize) -> Vec<Message> {
 
 /// Copies the entries of nodes from a system vector into a message, `values` beginning with them.
 pub(crate) fn pack(nodes: &[u32], dim: usize, vector: &[f64], values: &mut [f64]) {
-    for (&node, out) in nodes.iter().zip(values.chunks_exact_mut(dim)) {
-        out.copy_from_slice(&vector[dim * node as usize..][..dim]);
+    fn of<const D: usize>(nodes: &[u32], vector: &[f64], values: &mut [f64]) {
+        let (entries, (values, _)) = (vector.as_chunks::<D>().0, values.as_chunks_mut::<D>());
+        for (value, &node) in values.iter_mut().zip(nodes) {
+            *value = entries[node as usize];
+        }
+    }
+    match dim {
+        3 => of::<3>(nodes, vector, values),
+        2 => of::<2>(nodes, vector, values),
+        _ => of::<1>(nodes, vector, values),
     }
 }
 
 /// The reverse.
 pub(crate) fn unpack(nodes: &[u32], dim: usize, values: &[f64], vector: &mut [f64]) {
-    for (&node, from) in nodes.iter().zip(values.chunks_exact(dim)) {
-        vector[dim * node as usize..][..dim].copy_from_slice(from);
+    fn of<const D: usize>(nodes: &[u32], values: &[f64], vector: &mut [f64]) {
+        let ((entries, _), values) = (vector.as_chunks_mut::<D>(), values.as_chunks::<D>().0);
+        for (value, &node) in values.iter().zip(nodes) {
+            entries[node as usize] = *value;
+        }
+    }
+    match dim {
+        3 => of::<3>(nodes, values, vector),
+        2 => of::<2>(nodes, values, vector),
+        _ => of::<1>(nodes, values, vector),
     }
 }

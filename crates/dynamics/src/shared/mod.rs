@@ -18,11 +18,14 @@ use crate::resultant::Resultant;
 use crate::system::{Motion, System};
 use crate::update::Sums;
 use halo::{Halo, messages, pack, unpack};
-pub(crate) use parts::parts;
+use parts::Partition;
+pub use parts::SharedNodes;
+pub(crate) use parts::partition_of;
 
 /// What a rank has of a run.
 pub(crate) struct Shared {
     pub(crate) ranks: Ranks,
+    pub(crate) shared_nodes: SharedNodes,
     pub(crate) halo: Halo,
     /// Of each body the elements at nodes that others have too, and the others.
     bodies: Vec<[Share; 2]>,
@@ -47,13 +50,14 @@ pub(crate) struct Told {
 }
 
 impl Shared {
-    /// Of this rank. `watched`: nodes whose motion the first rank has after each step; `elements`: ranks of the elements of each body, solids all of them.
+    /// Of this rank. `watched`: nodes whose motion the first rank has after each step; `partition`: of the elements of each body, solids all of them.
     pub(crate) fn new(
         system: &System,
         ranks: &Ranks,
-        (watched, elements): (&[u32], Vec<Vec<u32>>),
+        (watched, partition): (&[u32], Partition),
     ) -> Shared {
         let rank = ranks.rank();
+        let elements = partition.of_bodies;
         let halo = Halo::new(system, &elements, rank);
         let mut border = vec![false; system.x.len()];
         for &node in &halo.shared {
@@ -84,6 +88,7 @@ impl Shared {
             whole: whole::Whole::new(system, (&halo, rank), watched, &elements),
             halo,
             ranks: ranks.clone(),
+            shared_nodes: partition.shared,
         }
     }
 

@@ -1,57 +1,209 @@
 //! Which elements are whose.
 
-use carom_ranks::partition;
+use carom_ranks::{Graph, Ranks, partition};
 
+use crate::error::Error;
 use crate::shared::halo::contact_nodes;
 use crate::system::System;
 
 /// What an element at finite strain costs over one at small strain, about.
 const FINITE: f64 = 3.0;
 
-/// The rank of each element of each body, the same in every process. Of the parts of equal cost the one with most nodes of contacts is that of the
-/// first rank, which has the contacts.
-pub(crate) fn parts(system: &System, ranks: usize) -> Vec<Vec<u32>> {
-    let (mut centres, mut weights, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    let touched = contact_nodes(system);
-    let mut touches = Vec::new();
-    for body in &system.bodies {
-        let before = centres.len();
-        let cost = if body.is_linear() { 1.0 } else { FINITE };
-        body.each_element(&mut |nodes| {
+/// The library's parts are taken where they share fewer nodes than this part of those that planes do: planes keep what is near in space together in
+/// memory ([`System::mesh_node`]).
+const FEWER: f64 = 0.9;
+
+/// The elements of all bodies in a row.
+#[derive(Default)]
+struct Elements {
+    /// System numbers of their nodes, element after element, where those of each begin, and their end.
+    nodes: Vec<u32>,
+    first: Vec<usize>,
+    cost: Vec<f64>,
+    /// Elements of each body.
+    counts: Vec<usize>,
+}
+
+impl Elements {
+    fn new(system: &System) -> Elements {
+        let mut all = Elements {
+            first: vec![0],
+            ..Elements::default()
+        };
+        for body in &system.bodies {
+            let before = all.cost.len();
+            let cost = if body.is_linear() { 1.0 } else { FINITE };
+            body.each_element(&mut |nodes| {
+                all.nodes.extend_from_slice(nodes);
+                all.first.push(all.nodes.len());
+                all.cost.push(cost * nodes.len() as f64);
+            });
+            all.counts.push(all.cost.len() - before);
+        }
+        all
+    }
+
+    fn of(&self, element: usize) -> &[u32] {
+        &self.nodes[self.first[element]..self.first[element + 1]]
+    }
+
+    fn each(&self) -> impl Iterator<Item = &[u32]> {
+        (0..self.cost.len()).map(|element| self.of(element))
+    }
+
+    fn centres(&self, system: &System) -> Vec<[f64; 3]> {
+        let of = |nodes: &[u32]| {
             let mut centre = [0.0; 3];
             for &node in nodes {
                 for (sum, x) in centre.iter_mut().zip(system.x[node as usize]) {
                     *sum += x / nodes.len() as f64;
                 }
             }
-            centres.push(centre);
-            weights.push(cost * nodes.len() as f64);
+            centre
+        };
+        self.each().map(of).collect()
+    }
+
+    /// The elements at each node: where those of each begin, and their end; and the elements.
+    fn at_nodes(&self, nodes: usize) -> (Vec<usize>, Vec<u32>) {
+        let mut first = vec![0; nodes + 1];
+        for &node in &self.nodes {
+            first[node as usize + 1] += 1;
+        }
+        for node in 0..nodes {
+            first[node + 1] += first[node];
+        }
+        let (mut next, mut elements) = (first.clone(), vec![0; self.nodes.len()]);
+        for (element, nodes) in self.each().enumerate() {
+            for &node in nodes {
+                elements[next[node as usize]] = element as u32;
+                next[node as usize] += 1;
+            }
+        }
+        (first, elements)
+    }
+
+    /// Own elements of a rank, and which elements have a face in common with each: as many nodes as there are dimensions.
+    fn graph(&self, system: &System, ranks: &Ranks) -> Graph {
+        let (first, at_nodes) = self.at_nodes(system.x.len());
+        let starts = ranks.starts(self.cost.len());
+        let own = starts[ranks.rank()]..starts[ranks.rank() + 1];
+        let (mut offsets, mut neighbours) = (vec![0], Vec::new());
+        let mut common = Vec::new();
+        for element in own.clone() {
+            common.clear();
+            for &node in self.of(element) {
+                let node = node as usize;
+                common.extend_from_slice(&at_nodes[first[node]..first[node + 1]]);
+            }
+            common.sort_unstable();
+            let others = common.chunk_by(|one, other| one == other);
+            let others = others.filter(|same| same.len() >= system.dim);
+            let others = others.map(|same| same[0] as usize);
+            let others = others.filter(|other| *other != element);
+            neighbours.extend(others.map(|other| other as i32));
+            offsets.push(neighbours.len() as i32);
+        }
+        Graph {
+            starts,
+            offsets,
+            neighbours,
+            weights: self.cost[own].iter().map(|cost| *cost as i32).collect(),
+        }
+    }
+
+    /// Nodes that parts share, each as many times as there are parts beside the first at it.
+    fn shared(&self, parts: &[u32], nodes: usize) -> usize {
+        let (first, at_nodes) = self.at_nodes(nodes);
+        let mut have = Vec::new();
+        let mut of_node = |node: usize| {
+            have.clear();
+            let elements = &at_nodes[first[node]..first[node + 1]];
+            have.extend(elements.iter().map(|element| parts[*element as usize]));
+            have.sort_unstable();
+            have.dedup();
+            have.len().saturating_sub(1)
+        };
+        (0..nodes).map(&mut of_node).sum()
+    }
+
+    /// Gives the first rank, which has the contacts, the part with most of their nodes.
+    fn give_contacts_to_first(&self, system: &System, parts: &mut [u32], ranks: usize) {
+        let touched = contact_nodes(system);
+        let mut touched_of = vec![0; ranks];
+        for (&part, nodes) in parts.iter().zip(self.each()) {
             let own = nodes
                 .iter()
                 .filter(|node| touched.binary_search(node).is_ok());
-            touches.push(own.count());
-        });
-        counts.push(centres.len() - before);
+            touched_of[part as usize] += own.count();
+        }
+        let first = (0..ranks).rev().max_by_key(|&rank| touched_of[rank]);
+        let first = first.unwrap_or(0) as u32;
+        for part in parts {
+            *part = match *part {
+                0 => first,
+                part if part == first => 0,
+                part => part,
+            };
+        }
     }
-    let mut parts = partition(&centres, &weights, ranks);
-    let mut touched_of = vec![0; ranks];
-    for (&part, count) in parts.iter().zip(&touches) {
-        touched_of[part as usize] += count;
+}
+
+/// The rank of each element of each body, the same in every process: parts of equal cost, by planes or, where that shares fewer nodes, by the
+/// library for graphs that the ranks have.
+///
+/// # Errors
+/// What the library says.
+pub(crate) fn partition_of(system: &System, ranks: &Ranks) -> Result<Partition, Error> {
+    let elements = Elements::new(system);
+    let count = ranks.count();
+    let mut parts = partition(&elements.centres(system), &elements.cost, count);
+    let mut shared = SharedNodes {
+        by_planes: elements.shared(&parts, system.x.len()),
+        by_graph: None,
+    };
+    if ranks.has_engine() {
+        let graph = elements.graph(system, ranks);
+        if let Some(found) = ranks.parts_of_graph(&graph).map_err(Error::Partition)? {
+            shared.by_graph = Some(elements.shared(&found, system.x.len()));
+            if shared.is_by_graph() {
+                parts = found;
+            }
+        }
     }
-    let first = (0..ranks).rev().max_by_key(|&rank| touched_of[rank]);
-    let first = first.unwrap_or(0) as u32;
-    for part in &mut parts {
-        *part = match *part {
-            0 => first,
-            part if part == first => 0,
-            part => part,
-        };
-    }
+    elements.give_contacts_to_first(system, &mut parts, count);
     let mut rest = &parts[..];
-    let own = counts.iter().map(|&count| {
+    let of_bodies = elements.counts.iter().map(|&count| {
         let (own, others) = rest.split_at(count);
         rest = others;
         own.to_vec()
     });
-    own.collect()
+    Ok(Partition {
+        of_bodies: of_bodies.collect(),
+        shared,
+    })
+}
+
+/// Who has which elements.
+pub(crate) struct Partition {
+    /// The rank of each element of each body.
+    pub(crate) of_bodies: Vec<Vec<u32>>,
+    pub(crate) shared: SharedNodes,
+}
+
+/// Nodes that ranks share, each as many times as there are ranks beside the first that has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SharedNodes {
+    /// Where planes share out the elements.
+    pub by_planes: usize,
+    /// Where the library for graphs does; none without it.
+    pub by_graph: Option<usize>,
+}
+
+impl SharedNodes {
+    /// Whether the elements are shared out as the library says.
+    pub fn is_by_graph(&self) -> bool {
+        let fewer = |by_graph: usize| (by_graph as f64) < FEWER * self.by_planes as f64;
+        self.by_graph.is_some_and(fewer)
+    }
 }
