@@ -318,7 +318,7 @@ fn go_on_after_a_kill(folder: &Path, end: &str) {
     assert_same(&folder.join("alone"), &folder.join("case.carom"));
 }
 
-/// A box that falls on its corner, with 12 912 elements, plasticity, friction and contact of all sides with each other, up to the first closings:
+/// A box that falls on its corner, with 12 912 elements, plasticity, friction and contact of all sides with each other:
 /// the results of one process.
 #[test]
 fn the_drop_test_on_several_processes_gives_the_results_of_one() {
@@ -328,7 +328,9 @@ fn the_drop_test_on_several_processes_gives_the_results_of_one() {
         "mesh.refine=1",
         "body.walls.mass-scaling.step=0.24 us",
         "body.corners.mass-scaling.step=0.24 us",
-        "time.end=0.1 ms",
+        // the critical step of elements at yield is by rounding that of loading or of unloading, and steps would follow it
+        "time.step=0.2 us",
+        "time.end=60 us",
     ];
     let work = tempfile::tempdir().unwrap();
     let run = |ranks: usize| {
@@ -349,7 +351,7 @@ fn the_drop_test_on_several_processes_gives_the_results_of_one() {
     let names: Vec<&str> = text.lines().next().unwrap().split(',').collect();
     let force = names
         .iter()
-        .position(|name| name.contains("box") && name.contains("force"));
+        .position(|name| name.contains("floor") && name.contains("force"));
     let force = force.unwrap();
     assert!(forces.iter().any(|row| row[force] > 0.0), "nothing touches");
     for ranks in [2, 4] {
