@@ -86,6 +86,34 @@ impl Csr {
         }
     }
 
+    /// Adds `factor` times a dense block over the unknowns of nodes, `dim` consecutive ones of each, as [`Csr::add_block`]: a pair of
+    /// nodes is looked for once, in the first row. Panics if an entry is not in the pattern.
+    ///
+    /// `first`: the first unknown of each node.
+    pub fn add_nodes(&mut self, first: &[u32], dim: usize, (factor, block): (f64, &[f64])) {
+        let size = dim * first.len();
+        debug_assert_eq!(block.len(), size * size);
+        for (rows, &row) in block.chunks_exact(dim * size).zip(first) {
+            let row = row as usize;
+            for (b, &column) in first.iter().enumerate() {
+                let offset = self.position(row, column) - self.row_ptr[row];
+                for (i, entries) in rows.chunks_exact(size).enumerate() {
+                    let guess = self.row_ptr[row + i] + offset;
+                    // rows of a node differ where the pattern couples one of its unknowns alone
+                    let k = match guess < self.row_ptr[row + i + 1] && self.col[guess] == column {
+                        true => guess,
+                        false => self.position(row + i, column),
+                    };
+                    let entries = &entries[dim * b..][..dim];
+                    for (value, entry) in self.val[k..k + dim].iter_mut().zip(entries) {
+                        *value += factor * entry;
+                    }
+                    debug_assert_eq!(self.col[k + dim - 1], column + dim as u32 - 1);
+                }
+            }
+        }
+    }
+
     /// Sets every stored entry to zero; the pattern stays.
     pub fn clear(&mut self) {
         self.val.fill(0.0);
@@ -129,45 +157,43 @@ impl Csr {
     /// Copy in which the rows and columns of the unknowns marked `fixed` hold 1 on the diagonal and nothing else, not even
     /// a stored zero: a factorisation then spends nothing on them.
     pub fn with_identity(&self, fixed: &[bool]) -> Self {
-        let mut row_ptr = Vec::with_capacity(self.n + 1);
-        let (mut col, mut val) = (Vec::new(), Vec::new());
-        row_ptr.push(0);
-        for i in 0..self.n {
-            let (columns, values) = self.row(i);
-            for (&j, &a) in columns.iter().zip(values) {
-                if j as usize == i || !(fixed[i] || fixed[j as usize]) {
-                    col.push(j);
-                    val.push(if fixed[i] { 1.0 } else { a });
-                }
-            }
-            row_ptr.push(col.len());
-        }
-        Self {
-            n: self.n,
-            row_ptr,
-            col,
-            val,
-        }
+        self.part(std::slice::from_ref(&(0..self.n)), |i| fixed[i])
     }
 
     /// The rows and columns of the unknowns in `ranges`, numbered one range after the other; entries in other columns are left out.
     pub fn restricted(&self, ranges: &[std::ops::Range<usize>]) -> Self {
+        self.part(ranges, |_| false)
+    }
+
+    /// [`Csr::restricted`], with [`Csr::with_identity`] of what `is_fixed` of the unknowns of this matrix.
+    pub fn part(
+        &self,
+        ranges: &[std::ops::Range<usize>],
+        is_fixed: impl Fn(usize) -> bool,
+    ) -> Self {
+        let rows = ranges.iter().cloned().flatten();
         let n = ranges.iter().map(|range| range.len()).sum();
+        let most = rows.clone().map(|i| self.row_ptr[i + 1] - self.row_ptr[i]);
+        let most = most.sum();
         let mut row_ptr = Vec::with_capacity(n + 1);
-        let (mut col, mut val) = (Vec::new(), Vec::new());
+        let (mut col, mut val) = (Vec::with_capacity(most), Vec::with_capacity(most));
         row_ptr.push(0);
-        for i in ranges.iter().cloned().flatten() {
+        for i in rows {
             let (columns, values) = self.row(i);
-            let mut first = 0;
+            let alone = is_fixed(i);
+            let (mut first, mut k) = (0, 0);
             for range in ranges {
-                let [begin, end] = [range.start, range.end]
-                    .map(|end| columns.partition_point(|&j| (j as usize) < end));
-                col.extend(
-                    columns[begin..end]
-                        .iter()
-                        .map(|&j| (j as usize - range.start + first) as u32),
-                );
-                val.extend_from_slice(&values[begin..end]);
+                while k < columns.len() && (columns[k] as usize) < range.start {
+                    k += 1;
+                }
+                while k < columns.len() && (columns[k] as usize) < range.end {
+                    let j = columns[k] as usize;
+                    if j == i || !(alone || is_fixed(j)) {
+                        col.push((j - range.start + first) as u32);
+                        val.push(if alone { 1.0 } else { values[k] });
+                    }
+                    k += 1;
+                }
                 first += range.len();
             }
             row_ptr.push(col.len());
