@@ -90,25 +90,37 @@ impl Csr {
     /// nodes is looked for once, in the first row. Panics if an entry is not in the pattern.
     ///
     /// `first`: the first unknown of each node.
-    pub fn add_nodes(&mut self, first: &[u32], dim: usize, (factor, block): (f64, &[f64])) {
-        let size = dim * first.len();
-        debug_assert_eq!(block.len(), size * size);
-        for (rows, &row) in block.chunks_exact(dim * size).zip(first) {
+    pub fn add_nodes(&mut self, first: &[u32], dim: usize, of: (f64, &[f64])) {
+        match dim {
+            1 => self.add_of_nodes::<1>(first, of),
+            2 => self.add_of_nodes::<2>(first, of),
+            _ => {
+                debug_assert_eq!(dim, 3);
+                self.add_of_nodes::<3>(first, of);
+            }
+        }
+    }
+
+    fn add_of_nodes<const D: usize>(&mut self, first: &[u32], (factor, block): (f64, &[f64])) {
+        let nodes = first.len();
+        let (entries, _) = block.as_chunks::<D>();
+        debug_assert_eq!(entries.len(), nodes * nodes * D);
+        for (a, &row) in first.iter().enumerate() {
             let row = row as usize;
             for (b, &column) in first.iter().enumerate() {
                 let offset = self.position(row, column) - self.row_ptr[row];
-                for (i, entries) in rows.chunks_exact(size).enumerate() {
+                for i in 0..D {
                     let guess = self.row_ptr[row + i] + offset;
                     // rows of a node differ where the pattern couples one of its unknowns alone
-                    let k = match guess < self.row_ptr[row + i + 1] && self.col[guess] == column {
+                    let k = match self.row_ptr[row + i + 1] > guess && self.col[guess] == column {
                         true => guess,
                         false => self.position(row + i, column),
                     };
-                    let entries = &entries[dim * b..][..dim];
-                    for (value, entry) in self.val[k..k + dim].iter_mut().zip(entries) {
+                    debug_assert_eq!(self.col[k + D - 1], column + D as u32 - 1);
+                    let values = self.val[k..k + D].iter_mut();
+                    for (value, entry) in values.zip(&entries[(D * a + i) * nodes + b]) {
                         *value += factor * entry;
                     }
-                    debug_assert_eq!(self.col[k + dim - 1], column + dim as u32 - 1);
                 }
             }
         }
@@ -181,18 +193,17 @@ impl Csr {
         for i in rows {
             let (columns, values) = self.row(i);
             let alone = is_fixed(i);
-            let (mut first, mut k) = (0, 0);
+            let mut first = 0;
             for range in ranges {
-                while k < columns.len() && (columns[k] as usize) < range.start {
-                    k += 1;
-                }
-                while k < columns.len() && (columns[k] as usize) < range.end {
-                    let j = columns[k] as usize;
+                let [begin, end] = [range.start, range.end]
+                    .map(|end| columns.partition_point(|&j| (j as usize) < end));
+                let entries = columns[begin..end].iter().zip(&values[begin..end]);
+                for (&j, &value) in entries {
+                    let j = j as usize;
                     if j == i || !(alone || is_fixed(j)) {
                         col.push((j - range.start + first) as u32);
-                        val.push(if alone { 1.0 } else { values[k] });
+                        val.push(if alone { 1.0 } else { value });
                     }
-                    k += 1;
                 }
                 first += range.len();
             }

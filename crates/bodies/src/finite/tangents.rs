@@ -176,11 +176,12 @@ impl<T: Number, const N: usize, const D: usize> Sum<T, N, D> {
             for i in 0..D {
                 let first = if whole { 0 } else { a };
                 for b in first..N {
-                    for k in 0..D {
+                    // of a symmetric matrix what is on and above the diagonal
+                    let least = if !whole && b == a { i } else { 0 };
+                    for k in least..D {
                         let entry = self.k[a][i][b][k].lanes()[lane];
                         out[(D * a + i) * size + D * b + k] = entry;
-                        // within a block both triangles were computed: the upper one counts
-                        if !whole && (b > a || k > i) {
+                        if !whole {
                             out[(D * b + k) * size + D * a + i] = entry;
                         }
                     }
