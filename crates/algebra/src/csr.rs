@@ -86,6 +86,46 @@ impl Csr {
         }
     }
 
+    /// Adds `factor` times a dense block over the unknowns of nodes, `dim` consecutive ones of each, as [`Csr::add_block`]: a pair of
+    /// nodes is looked for once, in the first row. Panics if an entry is not in the pattern.
+    ///
+    /// `first`: the first unknown of each node.
+    pub fn add_nodes(&mut self, first: &[u32], dim: usize, of: (f64, &[f64])) {
+        match dim {
+            1 => self.add_of_nodes::<1>(first, of),
+            2 => self.add_of_nodes::<2>(first, of),
+            _ => {
+                debug_assert_eq!(dim, 3);
+                self.add_of_nodes::<3>(first, of);
+            }
+        }
+    }
+
+    fn add_of_nodes<const D: usize>(&mut self, first: &[u32], (factor, block): (f64, &[f64])) {
+        let nodes = first.len();
+        let (entries, _) = block.as_chunks::<D>();
+        debug_assert_eq!(entries.len(), nodes * nodes * D);
+        for (a, &row) in first.iter().enumerate() {
+            let row = row as usize;
+            for (b, &column) in first.iter().enumerate() {
+                let offset = self.position(row, column) - self.row_ptr[row];
+                for i in 0..D {
+                    let guess = self.row_ptr[row + i] + offset;
+                    // rows of a node differ where the pattern couples one of its unknowns alone
+                    let k = match self.row_ptr[row + i + 1] > guess && self.col[guess] == column {
+                        true => guess,
+                        false => self.position(row + i, column),
+                    };
+                    debug_assert_eq!(self.col[k + D - 1], column + D as u32 - 1);
+                    let values = self.val[k..k + D].iter_mut();
+                    for (value, entry) in values.zip(&entries[(D * a + i) * nodes + b]) {
+                        *value += factor * entry;
+                    }
+                }
+            }
+        }
+    }
+
     /// Sets every stored entry to zero; the pattern stays.
     pub fn clear(&mut self) {
         self.val.fill(0.0);
@@ -129,45 +169,42 @@ impl Csr {
     /// Copy in which the rows and columns of the unknowns marked `fixed` hold 1 on the diagonal and nothing else, not even
     /// a stored zero: a factorisation then spends nothing on them.
     pub fn with_identity(&self, fixed: &[bool]) -> Self {
-        let mut row_ptr = Vec::with_capacity(self.n + 1);
-        let (mut col, mut val) = (Vec::new(), Vec::new());
-        row_ptr.push(0);
-        for i in 0..self.n {
-            let (columns, values) = self.row(i);
-            for (&j, &a) in columns.iter().zip(values) {
-                if j as usize == i || !(fixed[i] || fixed[j as usize]) {
-                    col.push(j);
-                    val.push(if fixed[i] { 1.0 } else { a });
-                }
-            }
-            row_ptr.push(col.len());
-        }
-        Self {
-            n: self.n,
-            row_ptr,
-            col,
-            val,
-        }
+        self.part(std::slice::from_ref(&(0..self.n)), |i| fixed[i])
     }
 
     /// The rows and columns of the unknowns in `ranges`, numbered one range after the other; entries in other columns are left out.
     pub fn restricted(&self, ranges: &[std::ops::Range<usize>]) -> Self {
+        self.part(ranges, |_| false)
+    }
+
+    /// [`Csr::restricted`], with [`Csr::with_identity`] of what `is_fixed` of the unknowns of this matrix.
+    pub fn part(
+        &self,
+        ranges: &[std::ops::Range<usize>],
+        is_fixed: impl Fn(usize) -> bool,
+    ) -> Self {
+        let rows = ranges.iter().cloned().flatten();
         let n = ranges.iter().map(|range| range.len()).sum();
+        let most = rows.clone().map(|i| self.row_ptr[i + 1] - self.row_ptr[i]);
+        let most = most.sum();
         let mut row_ptr = Vec::with_capacity(n + 1);
-        let (mut col, mut val) = (Vec::new(), Vec::new());
+        let (mut col, mut val) = (Vec::with_capacity(most), Vec::with_capacity(most));
         row_ptr.push(0);
-        for i in ranges.iter().cloned().flatten() {
+        for i in rows {
             let (columns, values) = self.row(i);
+            let alone = is_fixed(i);
             let mut first = 0;
             for range in ranges {
                 let [begin, end] = [range.start, range.end]
                     .map(|end| columns.partition_point(|&j| (j as usize) < end));
-                col.extend(
-                    columns[begin..end]
-                        .iter()
-                        .map(|&j| (j as usize - range.start + first) as u32),
-                );
-                val.extend_from_slice(&values[begin..end]);
+                let entries = columns[begin..end].iter().zip(&values[begin..end]);
+                for (&j, &value) in entries {
+                    let j = j as usize;
+                    if j == i || !(alone || is_fixed(j)) {
+                        col.push((j - range.start + first) as u32);
+                        val.push(if alone { 1.0 } else { value });
+                    }
+                }
                 first += range.len();
             }
             row_ptr.push(col.len());

@@ -242,6 +242,39 @@ impl<'a, const N: usize, const D: usize, const E: usize> Cell<'a, N, D, E> {
         (metric, h, hoop)
     }
 
+    /// dN_a/dX of the nodes at a point in 1/m, and N_a / r in axisymmetry.
+    #[inline(always)]
+    pub(crate) fn shape_gradients<T: Number>(
+        &self,
+        (point, metric): (&Point, &Metric<T, D>),
+    ) -> ([[T; D]; N], [T; N]) {
+        let zero = metric.det.like(0.0);
+        let inverse = metric.det.like(1.0) / metric.det;
+        let mut c = metric.cofactor;
+        for row in &mut c {
+            for entry in row {
+                *entry = *entry * inverse;
+            }
+        }
+        let (mut gradients, mut ring) = ([[zero; D]; N], [zero; N]);
+        for a in 0..N {
+            for k in 0..D {
+                let mut sum = c[k][0].scale(point.dn[a][0]);
+                for axis in 1..D {
+                    sum = c[k][axis].scale_add(point.dn[a][axis], sum);
+                }
+                gradients[a][k] = sum;
+            }
+        }
+        if self.has_hoop() {
+            let inverse = metric.radius.like(1.0) / metric.radius;
+            for a in 0..N {
+                ring[a] = inverse.scale(point.n[a]);
+            }
+        }
+        (gradients, ring)
+    }
+
     /// Displacement gradient at a point, and u_r / r in axisymmetry.
     #[inline(always)]
     pub(crate) fn slope<T: Number>(

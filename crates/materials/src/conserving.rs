@@ -17,7 +17,7 @@ use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 
 use crate::hyperelastic::{NEAR, Potential, State, atanh_series};
-use crate::lagrange::{Moduli, add_geometric, add_product, positive};
+use crate::lagrange::{Derivative, Moduli, positive};
 use crate::tensor::{
     Tensor, cofactor, determinant, double, green_lagrange, matrix, plus, plus_unit, product, rows,
     scaled, symmetric_entries, transposed_product,
@@ -173,14 +173,8 @@ impl Potential {
         let answer = self.answer_on(&path, [&h_0, &h_1], &algorithmic);
         positive(answer.positive)?;
         let tangent = (want == Want::Tangent).then(|| {
-            let (f_m, d) = (matrix(&path.f_m), matrix(&path.d));
-            let (moduli, slope) = self.moduli_between(&algorithmic, &d);
-            let mut tangent = moduli.pushed(&f_m, f[1]);
-            add_geometric(&mut tangent, &(matrix(&algorithmic.stress) * 0.5));
-            if let Some(w) = slope {
-                add_product(&mut tangent, &(f_m * d), &(f[1] * w));
-            }
-            tangent
+            let sides = [path.f_m, rows(f[1])];
+            self.derivative_on(&algorithmic, (sides, &path.d)).tangent()
         });
         Ok(Response::of(&answer, tangent))
     }
@@ -199,13 +193,13 @@ impl Potential {
         let algorithmic = self.conserving((rows(&(e_1 - d * 0.5)), strain), &change);
         let answer = self.answer_of(&algorithmic);
         let moduli = (want == Want::Tangent).then(|| {
-            let unit = Mat3::identity();
-            let (moduli, slope) = self.moduli_between(&algorithmic, d);
-            let mut moduli = moduli.pushed(&unit, &unit);
-            if let Some(w) = slope {
-                add_product(&mut moduli, d, &w);
-            }
-            moduli
+            let unit = rows(&Mat3::identity());
+            let derivative = self.derivative_on(&algorithmic, ([unit, unit], &change));
+            let of_strain = Derivative {
+                stress: [[0.0; 3]; 3],
+                ..derivative
+            };
+            of_strain.tangent()
         });
         Ok(Conserving {
             stress: matrix(&answer.stress),
@@ -214,18 +208,60 @@ impl Potential {
         })
     }
 
-    /// ∂S_alg/∂E_1 without D⊗w, and w where it is not too small.
-    fn moduli_between(&self, of: &Algorithmic<f64>, d: &Mat3) -> (Moduli, Option<Mat3>) {
-        let length = d.norm_squared();
+    /// Derivative of the stress of [`Potential::answer_between`] by F_1: S_alg/2 on each row, and F_m (∂S_alg/∂E_1) F_1.
+    #[inline(always)]
+    pub(crate) fn derivative_between<T: Number>(&self, h: [&Tensor<T>; 2]) -> Derivative<T> {
+        let path = Path::new(h);
+        let one = path.f_m[0][0].like(1.0);
+        let algorithmic = self.conserving((path.e_m, path.e_1), &path.d);
+        let [f_0, f_1] = h.map(|h| plus_unit(h, one));
+        let ends = determinant(&f_0).least(determinant(&f_1));
+        let derivative = self.derivative_on(&algorithmic, ([path.f_m, f_1], &path.d));
+        Derivative {
+            positive: ends.least(derivative.positive),
+            ..derivative
+        }
+    }
+
+    /// The parts of the derivative of L S_alg with these sides L and R.
+    #[inline(always)]
+    fn derivative_on<T: Number>(
+        &self,
+        of: &Algorithmic<T>,
+        (sides, d): ([Tensor<T>; 2], &Tensor<T>),
+    ) -> Derivative<T> {
+        let (moduli, w) = self.moduli_between(of, d);
+        let [left, right] = &sides;
+        Derivative {
+            bent: Some([product(left, d), product(right, &w)]),
+            sides,
+            moduli,
+            stress: scaled(&of.stress, of.rate.like(0.5)),
+            positive: of.middle.det.least(of.end.det),
+        }
+    }
+
+    /// ∂S_alg/∂E_1 without D⊗w, and w, nothing where it is too small.
+    #[inline(always)]
+    fn moduli_between<T: Number>(
+        &self,
+        of: &Algorithmic<T>,
+        d: &Tensor<T>,
+    ) -> (Moduli<T>, Tensor<T>) {
+        let (length, zero) = (double(d, d), of.rate.like(0.0));
         let mut moduli = self.moduli(&of.middle).half();
+        let change = plus(
+            &self.stress(&of.end),
+            zero.like(-1.0),
+            &self.stress(&of.middle),
+        );
+        let bent = plus(&change, zero.like(-1.0), &moduli.times(d));
+        let bent = plus(&bent, of.rate.scale(-2.0), d);
         // below, D⊗w is smaller than the round-off of its parts
-        let slope = (length > 1e-16).then(|| {
-            let [end, middle] = [&of.end, &of.middle].map(|state| matrix(&self.stress(state)));
-            let bent = end - middle - moduli.times(d);
-            (bent - d * (2.0 * of.rate)) / length
-        });
+        let least = length.like(1e-16);
+        let inverse = least.if_below(length, length.like(1.0) / length, zero);
         moduli.identity += of.rate;
-        (moduli, slope)
+        (moduli, scaled(&bent, inverse))
     }
 }
 

@@ -4,10 +4,10 @@
 use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 
-use crate::lagrange::{Moduli, add_geometric, positive};
+use crate::lagrange::{Derivative, Moduli, positive};
 use crate::tensor::{
-    Tensor, cofactor, determinant, double, green_lagrange, matrix, plus, plus_unit, product, rows,
-    scaled, symmetric_product, trace,
+    Tensor, cofactor, determinant, double, green_lagrange, plus, plus_unit, product, rows, scaled,
+    symmetric_product, trace,
 };
 use crate::{Answer, Conserving, Elastic, Failure, Material, Pointwise, Response, Want};
 
@@ -33,6 +33,19 @@ impl<L: Hyperelastic> Pointwise for L {
     #[inline(always)]
     fn between_strains<T: Number>(&self, e_1: &Tensor<T>, d: &Tensor<T>) -> Option<Answer<T>> {
         Some(self.potential().answer_between_strains(e_1, d))
+    }
+
+    #[inline(always)]
+    fn derivative<T: Number>(
+        &self,
+        h: &Tensor<T>,
+        from: Option<&Tensor<T>>,
+    ) -> Option<Derivative<T>> {
+        let potential = self.potential();
+        Some(match from {
+            Some(from) => potential.derivative_between([from, h]),
+            None => potential.derivative(h),
+        })
     }
 }
 
@@ -217,28 +230,39 @@ impl Potential {
     }
 
     /// ∂S/∂E, with ∂ ln J/∂E = B and ∂B/∂E = -2 B⊙B.
-    pub(crate) fn moduli(&self, state: &State<f64>) -> Moduli {
+    #[inline(always)]
+    pub(crate) fn moduli<T: Number>(&self, state: &State<T>) -> Moduli<T> {
+        let ln_j = state.ln_j;
         Moduli {
-            trace: self.trace,
-            identity: 2.0 * self.square,
-            product: self.volume,
-            cross: 2.0 * (self.barrier - self.volume * state.ln_j),
-            b: matrix(&state.b),
+            trace: ln_j.like(self.trace),
+            identity: ln_j.like(2.0 * self.square),
+            product: ln_j.like(self.volume),
+            cross: ln_j.scale_add(-2.0 * self.volume, ln_j.like(2.0 * self.barrier)),
+            b: state.b,
         }
     }
 
-    /// [`Potential::answer`] with the derivative δ_ik S_JL + F_iM (∂S/∂E)_MJNL F_kN.
+    /// Derivative of the stress of [`Potential::answer`], δ_ik S_JL + F_iM (∂S/∂E)_MJNL F_kN.
+    #[inline(always)]
+    pub(crate) fn derivative<T: Number>(&self, h: &Tensor<T>) -> Derivative<T> {
+        let f = plus_unit(h, h[0][0].like(1.0));
+        let state = self.state(green_lagrange(h));
+        Derivative {
+            sides: [f, f],
+            moduli: self.moduli(&state),
+            stress: self.stress(&state),
+            bent: None,
+            positive: determinant(&f).least(state.det),
+        }
+    }
+
+    /// [`Potential::answer`] with its derivative.
     fn response(&self, f: &Mat3, want: Want) -> Result<Response, Failure> {
         let h = rows(&(f - Mat3::identity()));
         let answer = self.answer(&h);
         positive(f.determinant())?;
         positive(answer.positive)?;
-        let tangent = (want == Want::Tangent).then(|| {
-            let state = State::new(green_lagrange(&h));
-            let mut tangent = self.moduli(&state).pushed(f, f);
-            add_geometric(&mut tangent, &matrix(&self.stress(&state)));
-            tangent
-        });
+        let tangent = (want == Want::Tangent).then(|| self.derivative(&h).tangent());
         Ok(Response::of(&answer, tangent))
     }
 }

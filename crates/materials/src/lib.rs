@@ -62,6 +62,7 @@ pub use elastic::{Elastic, Plane};
 pub use j2_plasticity::J2Plasticity;
 pub use j2_table::{HardeningPoint, J2Table, MAX_HARDENING_POINTS};
 pub use johnson_cook::{JohnsonCook, Thermal};
+pub use lagrange::Derivative;
 pub use list::Law;
 pub use material::{Conserving, Failure, Material, Response, Tangent, Want};
 pub use maxwell::{Branch, MAX_BRANCHES, Maxwell};

@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::lagrange::{Moduli, add_geometric, positive};
+use crate::lagrange::{Derivative, Moduli, positive};
 use crate::range::{OutOfRange, require};
 use crate::tensor::{
-    Tensor, determinant, double, green_lagrange, matrix, pack, plus, plus_unit, product, rows,
-    scaled, trace, unpack,
+    Tensor, determinant, double, green_lagrange, pack, plus, plus_unit, product, rows, scaled,
+    trace, unpack,
 };
 use crate::{
     Answer, Conserving, Elastic, Failure, Material, Parameters, Plane, Pointwise, Response, Want,
@@ -196,7 +196,7 @@ impl Maxwell {
     }
 
     /// ∂S/∂E at the end of a step.
-    fn moduli(&self, dt: f64) -> Moduli {
+    fn moduli(&self, dt: f64) -> Moduli<f64> {
         let gains = self.branches.iter().flatten();
         let gains = gains.map(|branch| branch.ratio * Relaxation::new(dt / branch.time).gain);
         let modulus = self.lasting() + gains.sum::<f64>();
@@ -206,7 +206,7 @@ impl Maxwell {
             identity: 2.0 * mu * modulus,
             product: 0.0,
             cross: 0.0,
-            b: Mat3::zeros(),
+            b: [[0.0; 3]; 3],
         }
     }
 }
@@ -247,9 +247,15 @@ impl Material for Maxwell {
         let answer = self.answer(&h, dt, old, new);
         let tangent = (want == Want::Tangent).then(|| {
             let (s, _) = self.relaxed(&green_lagrange(&h), dt, old, new);
-            let mut tangent = self.moduli(dt).pushed(f, f);
-            add_geometric(&mut tangent, &matrix(&s));
-            tangent
+            let f = rows(f);
+            let derivative = Derivative {
+                sides: [f, f],
+                moduli: self.moduli(dt),
+                stress: s,
+                bent: None,
+                positive: answer.positive,
+            };
+            derivative.tangent()
         });
         Ok(Response::of(&answer, tangent))
     }

@@ -3,7 +3,7 @@
 use carom_algebra::number::Number;
 
 use crate::tensor::{Tensor, double, entries, plus_unit, trace};
-use crate::{Elastic, Plane};
+use crate::{Derivative, Elastic, Plane};
 
 /// Most numbers that a law may keep of a point.
 pub const MAX_KEPT: usize = 30;
@@ -40,6 +40,17 @@ pub trait Pointwise {
     /// [`Material::between_strains`](crate::Material). None of a law without.
     #[inline(always)]
     fn between_strains<T: Number>(&self, _e_1: &Tensor<T>, _d: &Tensor<T>) -> Option<Answer<T>> {
+        None
+    }
+
+    /// ∂P/∂F at F = I + `h`, or ∂P_alg/∂F_1 of a step to it from F_0 = I + `from`. None of a law that has no stored energy alone,
+    /// whose tangents are those of [`Material::update`](crate::Material).
+    #[inline(always)]
+    fn derivative<T: Number>(
+        &self,
+        _h: &Tensor<T>,
+        _from: Option<&Tensor<T>>,
+    ) -> Option<Derivative<T>> {
         None
     }
 }

@@ -6,6 +6,7 @@
 mod block;
 mod factor;
 mod iterations;
+mod nodes;
 mod numbers;
 mod respond;
 

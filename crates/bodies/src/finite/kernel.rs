@@ -1,7 +1,7 @@
 //! Forces at finite strain of several elements at a time, as many as a register has lanes: the inner loop of a nonlinear explicit run.
 //!
 //! The formulas are those of `element.rs`, `dilatation.rs`, `between.rs` and `hourglass.rs`, which take one element after the other
-//! and give the tangents. Geometry is computed anew at each call, as at small strain.
+//! and give the tangents that `tangents.rs` does not. Geometry is computed anew at each call, as at small strain.
 //!
 //! A batch of elements passes through three functions: geometry and displacement gradients of all points, the law at all points,
 //! forces. Each is compiled for each instruction set; with the law apart, kinds and laws add up and do not multiply.
@@ -14,6 +14,7 @@ use pulp::{NullaryFnOnce, Simd, WithSimd};
 
 use super::batch::{AtLaw, Bad, Energies, Together, Watch};
 use super::body::{Finite, Outcome};
+use super::cell::Shape;
 use super::element::Fault;
 use super::passes::{Elements, Forces, Gradients, Room};
 use super::viscosity::{add_pressure, damp};
@@ -46,6 +47,8 @@ macro_rules! match_law {
         }
     };
 }
+
+pub(super) use {by_law, match_law};
 
 /// The forces of one chunk.
 pub(super) struct Sweep<'a> {
@@ -82,17 +85,6 @@ impl Sweep<'_> {
         }
     }
 
-    /// How the points of an element act together.
-    fn together(&self) -> Together {
-        let shape = &self.finite.shape;
-        match (shape.formulation, shape.hourglass(self.block)) {
-            (_, Some(modulus)) => Together::OnePoint(modulus),
-            // of a single point the mean is its own
-            (Formulation::BBar, _) if shape.points(self.block) > 1 => Together::Dilated,
-            _ => Together::Full,
-        }
-    }
-
     /// Takes as many elements at a time as a register has lanes, and adds forces and energies in the order of the elements.
     #[inline(always)]
     fn batches<S: Simd, const N: usize, const D: usize, const E: usize>(
@@ -106,7 +98,7 @@ impl Sweep<'_> {
         };
         let elements = Elements {
             cell: Cell::new(physics, &self.block.stiffness_points),
-            together: self.together(),
+            together: self.finite.shape.together(self.block),
             kind: self.block.kind,
             weighted: self.chunk.weights_of_work().is_some(),
             between: self.at.from.is_some(),
@@ -186,6 +178,18 @@ impl Sweep<'_> {
             }
         }
         out
+    }
+}
+
+impl Shape {
+    /// How the points of an element act together.
+    pub(super) fn together(&self, block: &Block) -> Together {
+        match (self.formulation, self.hourglass(block)) {
+            (_, Some(modulus)) => Together::OnePoint(modulus),
+            // of a single point the mean is its own
+            (Formulation::BBar, _) if self.points(block) > 1 => Together::Dilated,
+            _ => Together::Full,
+        }
     }
 }
 

@@ -23,6 +23,7 @@ mod placement;
 mod pressure;
 mod solid;
 mod sweep;
+mod tangents;
 mod viscosity;
 
 pub(crate) use body::{Finite, Outcome};

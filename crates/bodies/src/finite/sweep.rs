@@ -15,6 +15,7 @@ use super::body::{Failed, Finite, Outcome};
 use super::cell::{Element, MAX_UNKNOWNS, Shape};
 use super::element::{Fault, Local};
 use super::kernel;
+use super::tangents::Tangents;
 use super::{Placement, Stored};
 use crate::block::Block;
 use crate::chunk::Chunk;
@@ -23,8 +24,8 @@ use crate::scratch::Scratch;
 /// Entries of element tangents that are held at a time.
 const HELD: usize = 1 << 19;
 
-/// What is called for each element: first unknowns of its nodes, unknowns of a node, tangent in N/m, row-major.
-pub(super) type VisitTangent<'a> = dyn FnMut(&[u32], usize, &mut [f64]) + 'a;
+/// Elements whose tangents one thread computes at a time; chunks have a multiple of it, and it is one of all numbers of lanes.
+const PIECE: usize = 32;
 
 impl Finite {
     /// Numbers that the points of an element keep.
@@ -211,51 +212,85 @@ impl Finite {
         factor: f64,
         matrix: &mut Csr,
     ) -> Result<(), Failed> {
-        let mut unknowns = Vec::new();
-        self.each_tangent(blocks, at, &mut |first, dim, k| {
-            unknowns.clear();
-            let of_node = |&first: &u32| first..first + dim as u32;
-            unknowns.extend(first.iter().flat_map(of_node));
-            k.iter_mut().for_each(|k| *k *= factor);
-            matrix.add_block(&unknowns, k);
-        })
-    }
-
-    /// Calls `visit` with each element in their order.
-    pub(super) fn each_tangent(
-        &self,
-        blocks: &[Block],
-        at: &Placement,
-        visit: &mut VisitTangent,
-    ) -> Result<(), Failed> {
         let (mut first, mut before) = (0, 0);
-        let (mut tangents, mut results) = (Vec::new(), Vec::new());
+        let mut tangents = Vec::new();
         let dim = self.shape.dim();
         for block in blocks {
-            let kept = self.kept_of_element(block);
             let entries = (dim * block.kind.table().nodes).pow(2);
-            let held = (HELD / entries).max(1);
+            let held = (HELD / (entries * PIECE)).max(1) * PIECE;
+            let kept = self.kept_of_element(block);
+            let old = &at.old[before..before + block.len() * kept];
+            let at = Placement { old, ..*at };
             for begin in (0..block.len()).step_by(held) {
                 let count = held.min(block.len() - begin);
                 tangents.resize(count * entries, 0.0);
-                let all = tangents.par_chunks_exact_mut(entries).enumerate();
-                let room = || (Element::room(), vec![0.0; kept]);
-                all.map_init(room, |(element, new), (place, k)| {
-                    let place = begin + place;
-                    block.set(element, &self.shape, place);
-                    let old = before + kept * place..before + kept * (place + 1);
-                    self.at_element(element, at, old, |local| element.tangent(local, new, k))
-                })
-                .collect_into_vec(&mut results);
-                for (place, result) in results.drain(..).enumerate() {
-                    result.map_err(|fault| (first + begin + place, fault))?;
-                    let k = &mut tangents[place * entries..][..entries];
+                self.tangents(block, &at, (begin, &mut tangents))
+                    .map_err(|(place, fault)| (first + place, fault))?;
+                for (place, k) in tangents.chunks_exact(entries).enumerate() {
                     let (first, nodes) = block.first(begin + place);
-                    visit(&first[..nodes], dim, k);
+                    matrix.add_nodes(&first[..nodes], dim, (factor, k));
                 }
             }
             first += block.len();
             before += block.len() * kept;
+        }
+        Ok(())
+    }
+
+    /// Writes the tangents of as many elements of a block as there is room for, from one of them on, a multiple of [`PIECE`];
+    /// `at.old` is that of the block.
+    fn tangents(
+        &self,
+        block: &Block,
+        at: &Placement,
+        (begin, out): (usize, &mut [f64]),
+    ) -> Result<(), Failed> {
+        let entries = (self.shape.dim() * block.kind.table().nodes).pow(2);
+        let several = self.takes_tangents(block);
+        let work = |(place, out): (usize, &mut [f64])| {
+            let first = begin + place * PIECE;
+            if !several {
+                return self.tangents_singly(block, at, (first, out));
+            }
+            let (chunk, within) = (first / block.chunk_length(), first % block.chunk_length());
+            let tangents = Tangents {
+                finite: self,
+                block,
+                chunk: &block.chunks[chunk],
+                at,
+                first: within,
+                out,
+            };
+            let done = Arch::new().dispatch(tangents);
+            done.map_err(|(place, fault)| (first - within + place, fault))
+        };
+        if out.len() <= PIECE * entries {
+            // waking a thread takes as long as the work
+            return work((0, out));
+        }
+        let pieces = out.par_chunks_mut(PIECE * entries).enumerate();
+        let done: Vec<_> = pieces.map(work).collect();
+        done.into_iter().collect()
+    }
+
+    /// The same of one element after the other.
+    pub(super) fn tangents_singly(
+        &self,
+        block: &Block,
+        at: &Placement,
+        (begin, out): (usize, &mut [f64]),
+    ) -> Result<(), Failed> {
+        let kept = self.kept_of_element(block);
+        let entries = (self.shape.dim() * block.kind.table().nodes).pow(2);
+        let (mut element, mut new) = (Element::room(), vec![0.0; kept]);
+        for (place, k) in out.chunks_exact_mut(entries).enumerate() {
+            let place = begin + place;
+            block.set(&mut element, &self.shape, place);
+            let old = kept * place..kept * (place + 1);
+            self.at_element(&element, at, old, |local| {
+                element.tangent(local, &mut new, k)
+            })
+            .map_err(|fault| (place, fault))?;
         }
         Ok(())
     }

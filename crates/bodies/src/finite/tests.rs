@@ -11,6 +11,7 @@ use pulp::{Arch, Scalar, Simd};
 use super::body::{Finite, Outcome};
 use super::cell::Shape;
 use super::kernel::Sweep;
+use super::tangents::Tangents;
 use super::{Formulation, Placement};
 use crate::Kinematics;
 use crate::block::{Block, Physics};
@@ -232,6 +233,83 @@ fn kernels_give_what_one_element_after_the_other_gives() {
     }
 }
 
+/// Tangents at a displacement; `way` and `between` as above.
+fn tangents(
+    finite: &Finite,
+    (block, u): (&Block, &[f64]),
+    way: usize,
+    between: bool,
+) -> Result<Vec<f64>, usize> {
+    let from: Vec<f64> = u.iter().rev().map(|u| 0.3 * u).collect();
+    let at = Placement {
+        u,
+        v: &[],
+        from: between.then_some(&from[..]),
+        frames: &[],
+        dt: 0.7,
+        old: &[],
+    };
+    let entries = (finite.shape.dim() * block.kind.table().nodes).pow(2);
+    let mut out = vec![f64::NAN; block.len() * entries];
+    let several = |out| Tangents {
+        finite,
+        block,
+        chunk: &block.chunks[0],
+        at: &at,
+        first: 0,
+        out,
+    };
+    let done = match way {
+        0 => finite.tangents_singly(block, &at, (0, &mut out)),
+        1 => Arch::new().dispatch(several(&mut out)),
+        _ => Scalar.vectorize(several(&mut out)),
+    };
+    done.map(|()| out).map_err(|(place, _)| place)
+}
+
+/// As the forces.
+#[test]
+fn tangents_of_several_elements_are_those_of_one_after_the_other() {
+    let strain = Kinematics::PlaneStrain { thickness: 0.2 };
+    for (kind, kinematics) in [
+        (Kind::Tri3, strain),
+        (Kind::Quad4, strain),
+        (Kind::Quad4, Kinematics::Axisymmetric),
+        (Kind::Tri6, Kinematics::Axisymmetric),
+        (Kind::Tet4, Kinematics::Solid),
+        (Kind::Tet10, Kinematics::Solid),
+        (Kind::Wedge6, Kinematics::Solid),
+        (Kind::Hex8, Kinematics::Solid),
+    ] {
+        for (count, weighted) in [(1, false), (19, true)] {
+            let (block, u) = block(kind, kinematics, count, weighted);
+            for law in laws() {
+                let shape = Shape {
+                    kinematics,
+                    formulation: Formulation::Full,
+                    shear_modulus: INITIAL.shear_modulus(),
+                };
+                let finite = Finite::new(law, shape, false, None);
+                assert_eq!(finite.takes_tangents(&block), !law.dissipates());
+                for between in [false, true] {
+                    if law.dissipates() {
+                        continue;
+                    }
+                    let of = |way| tangents(&finite, (&block, &u), way, between).unwrap();
+                    let right = of(0);
+                    let largest = right.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
+                    for way in [1, 2] {
+                        for (a, b) in of(way).iter().zip(&right) {
+                            let name = format!("{kind:?} {kinematics:?} {} {between}", law.key());
+                            assert!(near(*a, *b, largest), "{name}: tangent {a} {b}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn an_element_inside_out_is_named() {
     let (block, mut u) = block(Kind::Hex8, Kinematics::Solid, 19, false);
@@ -253,6 +331,10 @@ fn an_element_inside_out_is_named() {
                     // a law without a stress between two displacements has none in the first element
                     let right = if between && law.dissipates() { 0 } else { 10 };
                     assert_eq!(fault.map(|(place, _)| place), Some(right), "{}", law.key());
+                    if finite.takes_tangents(&block) {
+                        let found = tangents(&finite, (&block, &u), way, between);
+                        assert_eq!(found.err(), Some(right), "{}", law.key());
+                    }
                 }
             }
         }

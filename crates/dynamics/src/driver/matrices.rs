@@ -57,6 +57,7 @@ impl Driver {
             return Ok(());
         }
         let begin = Instant::now();
+        self.pace.rounding = None;
         let system = Arc::clone(&self.system);
         let motion = &self.state.motion;
         self.maps.whole(

@@ -89,7 +89,7 @@ impl Matrices {
                 .flatten()
                 .map(|i| system.fixed[i])
                 .collect();
-            let mut free = a.restricted(&group.parts).with_identity(&fixed);
+            let mut free = a.part(&group.parts, |i| system.fixed[i]);
             let mut begin = 0;
             for part in &group.parts {
                 if floating.contains(part) {

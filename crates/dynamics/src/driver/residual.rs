@@ -111,7 +111,14 @@ impl Driver {
             }
         }
         let scale = self.scale_of_forces();
-        let [imbalance, rounding] = [imbalance.sqrt(), self.rounding()].map(|force| force / scale);
+        let rounding = match self.pace.rounding {
+            Some(rounding) => rounding,
+            None => {
+                let rounding = self.rounding();
+                *self.pace.rounding.insert(rounding)
+            }
+        };
+        let [imbalance, rounding] = [imbalance.sqrt(), rounding].map(|force| force / scale);
         self.left_over = scale * f64::max(self.system.nonlinear.iteration.tolerance, rounding);
         Standing {
             imbalance,

@@ -163,6 +163,8 @@ pub(super) struct Pace {
     pub(super) made: usize,
     /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
     pub(super) fresh: f64,
+    /// [`Driver::rounding`](super::Driver::rounding) with the matrix at hand; none before it is asked for.
+    pub(super) rounding: Option<f64>,
 }
 
 /// Points and forces of the stage.

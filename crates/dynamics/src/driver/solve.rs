@@ -110,6 +110,7 @@ impl Driver {
     pub(super) fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
+        self.pace.rounding = None;
         self.floating.begin();
         self.mixing.clear();
         self.take_matrices()?;
