@@ -103,13 +103,7 @@ fn on_all(count: usize, text: &str) -> Anyhow<[f64; 2]> {
         let started: Vec<_> = ranks
             .map(|own| {
                 scope.spawn(move || -> Anyhow<[f64; 2]> {
-                    let alone = rayon::ThreadPoolBuilder::new()
-                        .num_threads(1)
-                        .thread_name({
-                            let rank = own.rank();
-                            move |_| format!("rank{rank}")
-                        })
-                        .build()?;
+                    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
                     alone.install(|| timed(&own, text))
                 })
             })

@@ -89,8 +89,8 @@ pub enum Error {
     },
     /// Elements have shortened so far that no part of an explicit step is stable.
     #[error(
-        "step {step}, t = {time:e} s: elements have shortened or bulk viscosity acts: the critical step, that of {place}, is now {critical:e} s, \
-         below the smallest part of a step, {dt:.4e} s"
+        "step {step}, t = {time:e} s: elements have shortened or bulk viscosity acts: the critical step, that of {place}, is now {critical:.4e} s; \
+         the step that fits, {fitting:.4e} s, is below the smallest part of a step, {dt:.4e} s"
     )]
     Shortened {
         /// Number of the step.
@@ -101,6 +101,8 @@ pub enum Error {
         dt: f64,
         /// The critical step 2/ω, s.
         critical: f64,
+        /// The largest step that leaves its margin, or is the part of the critical step that was asked for, s.
+        fitting: f64,
         /// The element that bounds it, in words.
         place: Box<str>,
     },

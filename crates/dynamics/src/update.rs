@@ -66,7 +66,9 @@ impl Update<'_> {
         let (of_own, of_others) = sums.split_at_mut(counted);
         let [ahead, v, a] = out;
         self.panel(own, of_own, (0, [&mut *ahead, &mut *v, &mut *a]));
-        self.panel(others, of_others, (0, [ahead, v, a]));
+        if !others.is_empty() {
+            self.panel(others, of_others, (0, [ahead, v, a]));
+        }
     }
 
     /// The same for some of the blocks, ascending; the vectors begin at the node `origin`.
@@ -107,8 +109,9 @@ impl WithSimd for Panel<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let (dim, origin) = (self.update.system.dim, self.origin);
         let [ahead, v, a] = self.out;
-        let (mut buffers, mut room) = (Buffers::default(), [[0.0; 3 * NODES]; 11]);
-        let mut written = [[0.0; 3 * NODES]; 3];
+        let mut buffers = Buffers::default();
+        // a process alone has no runs, and does not fill it
+        let mut room: Option<Room> = None;
         for (block, sums) in self.blocks.iter().zip(self.sums) {
             *sums = Sums::default();
             let of = (block, &mut buffers);
@@ -119,11 +122,12 @@ impl WithSimd for Panel<'_> {
                     self.update.any(of, &self.update.run_of(*nodes), sums, out);
                 }
                 Nodes::Runs(nodes) => {
+                    let (room, written) = room.get_or_insert_with(empty);
                     let out = written.each_mut().map(|all| &mut all[..nodes.fixed.len()]);
                     let touched = block.touched != [false; 2];
-                    let within = self.update.runs_of((nodes, touched), &mut room);
+                    let within = self.update.runs_of((nodes, touched), room);
                     self.update.any(of, &within, sums, out);
-                    for (all, own) in [&mut *ahead, &mut *v, &mut *a].into_iter().zip(&written) {
+                    for (all, own) in [&mut *ahead, &mut *v, &mut *a].into_iter().zip(&*written) {
                         nodes.place((dim, origin), own, all);
                     }
                 }
@@ -147,8 +151,16 @@ struct Within<'a> {
     x: &'a [[f64; 3]],
 }
 
-/// Room for the vectors of nodes that do not all follow each other.
-type Room = [[f64; 3 * NODES]; 11];
+/// Room for the vectors of nodes that do not all follow each other: what is read, and what is written.
+type Room = ([Entries; 11], [Entries; 3]);
+
+/// Entries of one vector.
+type Entries = [f64; 3 * NODES];
+
+#[inline(always)]
+fn empty() -> Room {
+    ([[0.0; 3 * NODES]; 11], [[0.0; 3 * NODES]; 3])
+}
 
 /// What a block keeps between its loops.
 #[derive(Default)]
@@ -266,7 +278,11 @@ impl Update<'_> {
 
     /// What others read.
     #[inline(always)]
-    fn runs_of<'a>(&self, (nodes, touched): (&'a Runs, bool), room: &'a mut Room) -> Within<'a> {
+    fn runs_of<'a>(
+        &self,
+        (nodes, touched): (&'a Runs, bool),
+        room: &'a mut [Entries; 11],
+    ) -> Within<'a> {
         let (dim, n) = (self.system.dim, nodes.fixed.len());
         let mut rooms = room.iter_mut();
         let mut pick = |vector: &[f64]| -> &'a [f64] {

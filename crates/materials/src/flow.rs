@@ -15,7 +15,7 @@ use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 
 use crate::hardening::Hardening;
-use crate::lagrange::positive;
+use crate::material::positive;
 use crate::spectral::spectral;
 use crate::tensor::{
     Tensor, cofactor, determinant, entries, pack, plus_unit, product, product_transposed, rows,

@@ -4,7 +4,8 @@
 use carom_algebra::number::Number;
 use carom_algebra::tensor::Mat3;
 
-use crate::lagrange::{Derivative, Moduli, positive};
+use crate::lagrange::{Derivative, Moduli};
+use crate::material::positive;
 use crate::tensor::{
     Tensor, cofactor, determinant, double, green_lagrange, plus, plus_unit, product, rows, scaled,
     symmetric_product, trace,

@@ -3,16 +3,6 @@
 use carom_algebra::number::Number;
 
 use crate::tensor::{Tensor, double, plus, plus_unit, product, product_transposed, scaled, trace};
-use crate::{Failure, Tangent};
-
-/// A determinant, which must be positive.
-pub(crate) fn positive(determinant: f64) -> Result<f64, Failure> {
-    if determinant > 0.0 {
-        Ok(determinant)
-    } else {
-        Err(Failure::Inverted { determinant })
-    }
-}
 
 /// Moduli ∂S/∂E = trace I⊗I + identity 𝕀 + product B⊗B + cross B⊙B, with a symmetric tensor B, the identity
 /// 𝕀 of symmetric tensors and (B⊙B)_IJKL = (B_IK B_JL + B_IL B_JK)/2. Coefficients in Pa.
@@ -127,7 +117,7 @@ impl<T: Number> Derivative<T> {
 
 impl Derivative<f64> {
     /// All entries.
-    pub(crate) fn tangent(&self) -> Box<Tangent> {
+    pub(crate) fn tangent(&self) -> Box<[[f64; 9]; 9]> {
         let mut tangent = Box::new([[0.0; 9]; 9]);
         self.write::<3>(false, &mut tangent);
         tangent

@@ -67,6 +67,15 @@ pub enum Failure {
     },
 }
 
+/// A determinant, which must be positive.
+pub(crate) fn positive(determinant: f64) -> Result<f64, Failure> {
+    if determinant > 0.0 {
+        Ok(determinant)
+    } else {
+        Err(Failure::Inverted { determinant })
+    }
+}
+
 /// A law at finite strain, at one point.
 ///
 /// F is the deformation gradient ∂x/∂X with all nine components: plane strain has F_33 = 1, axisymmetry F_33 = r/R.

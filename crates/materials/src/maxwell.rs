@@ -7,7 +7,8 @@ use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::lagrange::{Derivative, Moduli, positive};
+use crate::lagrange::{Derivative, Moduli};
+use crate::material::positive;
 use crate::range::{OutOfRange, require};
 use crate::tensor::{
     Tensor, determinant, double, green_lagrange, pack, plus, plus_unit, product, rows, scaled,

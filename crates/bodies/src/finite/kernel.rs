@@ -48,7 +48,22 @@ macro_rules! match_law {
     };
 }
 
-pub(super) use {by_law, match_law};
+/// Calls a method with N nodes, D dimensions and E edges along an axis of a kind that [`takes`] has.
+macro_rules! by_kind {
+    ($kind:expr, $own:ident.$method:ident::<$S:ident>($($argument:expr),*)) => {
+        match $kind {
+            Kind::Tri3 => $own.$method::<$S, 3, 2, 1>($($argument),*),
+            Kind::Tri6 => $own.$method::<$S, 6, 2, 3>($($argument),*),
+            Kind::Quad4 => $own.$method::<$S, 4, 2, 2>($($argument),*),
+            Kind::Tet4 => $own.$method::<$S, 4, 3, 1>($($argument),*),
+            Kind::Tet10 => $own.$method::<$S, 10, 3, 4>($($argument),*),
+            Kind::Wedge6 => $own.$method::<$S, 6, 3, 3>($($argument),*),
+            _ => $own.$method::<$S, 8, 3, 4>($($argument),*),
+        }
+    };
+}
+
+pub(super) use {by_kind, by_law, match_law};
 
 /// The forces of one chunk.
 pub(super) struct Sweep<'a> {
@@ -67,24 +82,12 @@ impl WithSimd for Sweep<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Outcome {
-        self.kinds(Packed::all(simd, 0.0), simd)
+        let zero = Packed::all(simd, 0.0);
+        by_kind!(self.block.kind, self.batches::<S>(zero, simd))
     }
 }
 
 impl Sweep<'_> {
-    #[inline(always)]
-    fn kinds<S: Simd>(self, zero: Packed<S>, simd: S) -> Outcome {
-        match self.block.kind {
-            Kind::Tri3 => self.batches::<S, 3, 2, 1>(zero, simd),
-            Kind::Tri6 => self.batches::<S, 6, 2, 3>(zero, simd),
-            Kind::Quad4 => self.batches::<S, 4, 2, 2>(zero, simd),
-            Kind::Tet4 => self.batches::<S, 4, 3, 1>(zero, simd),
-            Kind::Tet10 => self.batches::<S, 10, 3, 4>(zero, simd),
-            Kind::Wedge6 => self.batches::<S, 6, 3, 3>(zero, simd),
-            _ => self.batches::<S, 8, 3, 4>(zero, simd),
-        }
-    }
-
     /// Takes as many elements at a time as a register has lanes, and adds forces and energies in the order of the elements.
     #[inline(always)]
     fn batches<S: Simd, const N: usize, const D: usize, const E: usize>(

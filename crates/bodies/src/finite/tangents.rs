@@ -14,7 +14,7 @@ use super::Placement;
 use super::batch::{Together, Watch};
 use super::body::{Failed, Finite};
 use super::element::Fault;
-use super::kernel::{self, by_law, match_law};
+use super::kernel::{self, by_kind, by_law, match_law};
 use super::passes::{Elements, Gradients, Room};
 use crate::block::{Block, Physics};
 use crate::chunk::Chunk;
@@ -57,15 +57,7 @@ impl WithSimd for Tangents<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let zero = Packed::all(simd, 0.0);
-        match self.block.kind {
-            Kind::Tri3 => self.batches::<S, 3, 2, 1>(zero, simd),
-            Kind::Tri6 => self.batches::<S, 6, 2, 3>(zero, simd),
-            Kind::Quad4 => self.batches::<S, 4, 2, 2>(zero, simd),
-            Kind::Tet4 => self.batches::<S, 4, 3, 1>(zero, simd),
-            Kind::Tet10 => self.batches::<S, 10, 3, 4>(zero, simd),
-            Kind::Wedge6 => self.batches::<S, 6, 3, 3>(zero, simd),
-            _ => self.batches::<S, 8, 3, 4>(zero, simd),
-        }
+        by_kind!(self.block.kind, self.batches::<S>(zero, simd))
     }
 }
 

@@ -102,7 +102,7 @@ impl Driver {
         let halvings = self.system.nonlinear.iteration.halvings;
         let mut levels = 0..=halvings;
         let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);
-        level.ok_or_else(|| self.shortened(dt / (1u64 << halvings) as f64))
+        level.ok_or_else(|| self.shortened(dt, stable))
     }
 
     /// The step of the model, or where it is a fraction of the critical step and elements have changed, the largest of the ladder
@@ -124,7 +124,7 @@ impl Driver {
             .max(last - 1.0)
             .max(0.0);
         if rungs > RUNGS * f64::from(self.system.nonlinear.iteration.halvings) {
-            return Err(self.shortened(dt * f64::exp2(-rungs / RUNGS)));
+            return Err(self.shortened(dt, most));
         }
         Ok(match rungs > 0.0 {
             true => f64::min(most, dt * f64::exp2(-rungs / RUNGS)),
@@ -132,9 +132,10 @@ impl Driver {
         })
     }
 
-    /// That the smallest part of a step, `dt` (s), is beyond what an element has for critical step.
-    fn shortened(&self, dt: f64) -> Error {
+    /// That the smallest part of a step of `dt` (s) is larger than the one that fits, `fitting` (s).
+    fn shortened(&self, dt: f64, fitting: f64) -> Error {
         let (system, state) = (&*self.system, &self.state);
+        let halvings = system.nonlinear.iteration.halvings;
         // of several ranks none has all elements as they are now
         let whole = !self.is_shared();
         let bound = whole.then(|| system.critical_step_at(&state.motion).ok());
@@ -144,8 +145,9 @@ impl Driver {
         Error::Shortened {
             step: state.step + 1,
             time: state.time,
-            dt,
+            dt: dt / (1u64 << halvings) as f64,
             critical: self.stable_step() / PART,
+            fitting,
             place: match (body, cell) {
                 (Some(body), Some(cell)) => format!(
                     "cell {} of block {} in body '{}'",

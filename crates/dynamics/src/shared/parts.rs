@@ -22,6 +22,8 @@ struct Elements {
     cost: Vec<f64>,
     /// Elements of each body.
     counts: Vec<usize>,
+    /// Where the elements at each node begin, and their end; and these elements.
+    at_nodes: (Vec<usize>, Vec<u32>),
 }
 
 impl Elements {
@@ -40,6 +42,7 @@ impl Elements {
             });
             all.counts.push(all.cost.len() - before);
         }
+        all.at_nodes = all.elements_at(system.x.len());
         all
     }
 
@@ -64,8 +67,7 @@ impl Elements {
         self.each().map(of).collect()
     }
 
-    /// The elements at each node: where those of each begin, and their end; and the elements.
-    fn at_nodes(&self, nodes: usize) -> (Vec<usize>, Vec<u32>) {
+    fn elements_at(&self, nodes: usize) -> (Vec<usize>, Vec<u32>) {
         let mut first = vec![0; nodes + 1];
         for &node in &self.nodes {
             first[node as usize + 1] += 1;
@@ -83,9 +85,13 @@ impl Elements {
         (first, elements)
     }
 
+    fn at_node(&self, node: usize) -> &[u32] {
+        let (first, elements) = &self.at_nodes;
+        &elements[first[node]..first[node + 1]]
+    }
+
     /// Own elements of a rank, and which elements have a face in common with each: as many nodes as there are dimensions.
     fn graph(&self, system: &System, ranks: &Ranks) -> Graph {
-        let (first, at_nodes) = self.at_nodes(system.x.len());
         let starts = ranks.starts(self.cost.len());
         let own = starts[ranks.rank()]..starts[ranks.rank() + 1];
         let (mut offsets, mut neighbours) = (vec![0], Vec::new());
@@ -93,8 +99,7 @@ impl Elements {
         for element in own.clone() {
             common.clear();
             for &node in self.of(element) {
-                let node = node as usize;
-                common.extend_from_slice(&at_nodes[first[node]..first[node + 1]]);
+                common.extend_from_slice(self.at_node(node as usize));
             }
             common.sort_unstable();
             let others = common.chunk_by(|one, other| one == other);
@@ -113,18 +118,17 @@ impl Elements {
     }
 
     /// Nodes that parts share, each as many times as there are parts beside the first at it.
-    fn shared(&self, parts: &[u32], nodes: usize) -> usize {
-        let (first, at_nodes) = self.at_nodes(nodes);
+    fn shared(&self, parts: &[u32]) -> usize {
         let mut have = Vec::new();
         let mut of_node = |node: usize| {
             have.clear();
-            let elements = &at_nodes[first[node]..first[node + 1]];
-            have.extend(elements.iter().map(|element| parts[*element as usize]));
+            let elements = self.at_node(node).iter();
+            have.extend(elements.map(|element| parts[*element as usize]));
             have.sort_unstable();
             have.dedup();
             have.len().saturating_sub(1)
         };
-        (0..nodes).map(&mut of_node).sum()
+        (0..self.at_nodes.0.len() - 1).map(&mut of_node).sum()
     }
 
     /// Gives the first rank, which has the contacts, the part with most of their nodes.
@@ -159,13 +163,13 @@ pub(crate) fn partition_of(system: &System, ranks: &Ranks) -> Result<Partition, 
     let count = ranks.count();
     let mut parts = partition(&elements.centres(system), &elements.cost, count);
     let mut shared = SharedNodes {
-        by_planes: elements.shared(&parts, system.x.len()),
+        by_planes: elements.shared(&parts),
         by_graph: None,
     };
     if ranks.has_engine() {
         let graph = elements.graph(system, ranks);
         if let Some(found) = ranks.parts_of_graph(&graph).map_err(Error::Partition)? {
-            shared.by_graph = Some(elements.shared(&found, system.x.len()));
+            shared.by_graph = Some(elements.shared(&found));
             if shared.is_by_graph() {
                 parts = found;
             }

@@ -316,6 +316,28 @@ fn an_explicit_step_is_split_where_elements_have_shortened() {
     }
 }
 
+/// Half of the critical step is asked for, of which no smaller part may be taken: the error tells a step that is below the smallest part, which the
+/// critical step itself is not.
+#[test]
+fn an_error_tells_the_step_that_a_fraction_of_the_critical_one_asks_for() {
+    let mut model = squeezed_model(0);
+    model.critical_fraction = Some(0.5);
+    model.nonlinear.iteration.halvings = 0;
+    let mut newton = newton(model);
+    match (0..1000).find_map(|_| newton.step().err()) {
+        Some(Error::Shortened {
+            dt,
+            critical,
+            fitting,
+            ..
+        }) => {
+            assert!(fitting < dt && dt == newton.system().dt);
+            assert!((fitting / critical - 0.5).abs() < 1e-12);
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
 /// A step that is a fraction of the critical one is never split: it gets shorter. It is below the critical step of the present shape,
 /// and no lower than what is not known of that step: lengths to a tenth when they are looked at, so much of the stiffness
 /// of the least of them, and a rung.
