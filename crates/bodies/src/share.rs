@@ -6,7 +6,7 @@ use carom_mesh::ElementId;
 
 use crate::block::{Block, chunk_length};
 use crate::chunk::Chunk;
-use crate::finite::{Placement, Stored};
+use crate::finite::{Looks, Placement, Seen, Stored};
 use crate::gather::Gather;
 use crate::solid::Solid;
 use crate::{Error, Scratch};
@@ -185,12 +185,7 @@ impl Share {
         if self.places.is_empty() {
             return Ok(Stored::default());
         }
-        let mut first = 0;
-        for range in &self.histories {
-            let own = first..first + range.len();
-            self.old[own.clone()].copy_from_slice(&at.old[range.clone()]);
-            first = own.end;
-        }
+        self.take_histories(at.old);
         let own = Placement {
             old: &self.old,
             ..*at
@@ -198,13 +193,39 @@ impl Share {
         let stored = self
             .solid
             .force(&own, &mut self.new, &mut self.scratch, f)?;
-        first = 0;
+        let mut first = 0;
         for range in &self.histories {
             let own = first..first + range.len();
             new[range.clone()].copy_from_slice(&self.new[own.clone()]);
             first = own.end;
         }
         Ok(stored)
+    }
+
+    /// As [`Solid::look`], of these elements; `at.old` is the history of the whole body.
+    ///
+    /// # Errors
+    /// As [`Solid::force`].
+    pub fn look(&mut self, at: &Placement, looks: &mut Looks, worth: f64) -> Result<Seen, Error> {
+        if self.places.is_empty() {
+            return Ok(Seen::default());
+        }
+        self.take_histories(at.old);
+        let own = Placement {
+            old: &self.old,
+            ..*at
+        };
+        self.solid.look(&own, looks, worth)
+    }
+
+    /// Takes the histories of these elements out of that of the whole body.
+    fn take_histories(&mut self, whole: &[f64]) {
+        let mut first = 0;
+        for range in &self.histories {
+            let own = first..first + range.len();
+            self.old[own.clone()].copy_from_slice(&whole[range.clone()]);
+            first = own.end;
+        }
     }
 }
 

@@ -173,7 +173,7 @@ impl Potential {
         let algorithmic = self.conserving((path.e_m, path.e_1), &path.d);
         let answer = self.answer_on(&path, [&h_0, &h_1], &algorithmic);
         positive(answer.positive)?;
-        let tangent = (want == Want::Tangent).then(|| {
+        let tangent = want.has_tangent().then(|| {
             let sides = [path.f_m, rows(f[1])];
             self.derivative_on(&algorithmic, (sides, &path.d)).tangent()
         });
@@ -193,7 +193,7 @@ impl Potential {
         let (strain, change) = (rows(e_1), rows(d));
         let algorithmic = self.conserving((rows(&(e_1 - d * 0.5)), strain), &change);
         let answer = self.answer_of(&algorithmic);
-        let moduli = (want == Want::Tangent).then(|| {
+        let moduli = want.has_tangent().then(|| {
             let unit = rows(&Mat3::identity());
             let derivative = self.derivative_on(&algorithmic, ([unit, unit], &change));
             let of_strain = Derivative {

@@ -125,11 +125,11 @@ impl<H: Hardening> Flow<'_, H> {
     /// a = κ + 2μ left (δ - 1/3) + 6μ² (Δε_p/q - 1/(3μ + dσ_y/dΔε_p)) flow flow the consistent modulus of the return at small strain, and
     /// w_ab = (τ_a - τ_b)/(β_a - β_b) = 2μ left (ε_a - ε_b)/(β_a - β_b), whose limit at equal eigenvalues is 1/(2β):
     /// the return scales the deviator, so that only the logarithm is left to divide.
-    /// `g` is Nᵀ F⁻ᵀ.
-    fn tangent(&self, at: &Return<f64>, g: &Tensor<f64>) -> Box<Tangent> {
+    /// `g` is Nᵀ F⁻ᵀ; where nothing `flows` further, a is that without the last term.
+    fn tangent(&self, at: &Return<f64>, g: &Tensor<f64>, flows: bool) -> Box<Tangent> {
         let (mu, bulk) = (self.0.elastic().shear_modulus(), self.bulk_modulus());
         let two_mu = 2.0 * mu * at.left;
-        let softer = if at.slip > 0.0 {
+        let softer = if flows {
             let q = 6_f64.sqrt() * mu * at.norm;
             6.0 * mu * mu * (at.slip / q - 1.0 / (3.0 * mu + at.slope))
         } else {
@@ -249,7 +249,8 @@ impl<H: Hardening> Flow<'_, H> {
         let at = self.returned(&h, old, dt);
         let (answer, g) = self.answered((&at, &h), old, new);
         positive(answer.positive)?;
-        let tangent = (want == Want::Tangent).then(|| self.tangent(&at, &g));
+        let flows = want == Want::Tangent && at.slip > 0.0;
+        let tangent = want.has_tangent().then(|| self.tangent(&at, &g, flows));
         Ok(Response::of(&answer, tangent))
     }
 }

@@ -263,7 +263,7 @@ impl Potential {
         let answer = self.answer(&h);
         positive(f.determinant())?;
         positive(answer.positive)?;
-        let tangent = (want == Want::Tangent).then(|| self.derivative(&h).tangent());
+        let tangent = want.has_tangent().then(|| self.derivative(&h).tangent());
         Ok(Response::of(&answer, tangent))
     }
 }

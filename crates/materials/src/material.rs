@@ -16,6 +16,15 @@ pub enum Want {
     Stress,
     /// The consistent tangent.
     Tangent,
+    /// The tangent without further flow: that of elastic unloading, which is the stiffest. Of laws that do not flow the consistent one.
+    Unloading,
+}
+
+impl Want {
+    /// Whether a tangent is wanted.
+    pub(crate) fn has_tangent(self) -> bool {
+        self != Want::Stress
+    }
 }
 
 /// Stress and energy of a law at one point.

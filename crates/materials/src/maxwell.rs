@@ -246,7 +246,7 @@ impl Material for Maxwell {
         positive(f.determinant())?;
         let h = rows(&(f - Mat3::identity()));
         let answer = self.answer(&h, dt, old, new);
-        let tangent = (want == Want::Tangent).then(|| {
+        let tangent = want.has_tangent().then(|| {
             let (s, _) = self.relaxed(&green_lagrange(&h), dt, old, new);
             let f = rows(f);
             let derivative = Derivative {

@@ -118,7 +118,7 @@ impl Element {
 
     pub(super) fn dilated_tangent(
         &self,
-        at: &Local,
+        (at, want): (&Local, Want),
         new: &mut [f64],
         matrix: &mut [f64],
     ) -> Result<(), Fault> {
@@ -127,7 +127,7 @@ impl Element {
         let mut points = Vec::with_capacity(self.points);
         let (mut mean, mut d) = (0.0, [0.0; MAX_UNKNOWNS]);
         for place in 0..self.points {
-            let point = self.dilated_point(place, &dilatation, at, new, Want::Tangent)?;
+            let point = self.dilated_point(place, &dilatation, at, new, want)?;
             mean += point.weighted * point.pressure;
             let gradient = self.gradient(place);
             gradient.add_transposed(point.share, &point.g, &mut d[..n]);

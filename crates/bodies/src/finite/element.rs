@@ -82,10 +82,10 @@ impl Element {
     }
 
     /// Writes ∂f/∂u of an element (N/m, row-major). It is symmetric but between two displacements, where the force is virtual work at
-    /// the middle and varies at the end. `new`: room for its history.
+    /// the middle and varies at the end. `want`: which one; `new`: room for its history.
     pub(super) fn tangent(
         &self,
-        at: &Local,
+        (at, want): (&Local, Want),
         new: &mut [f64],
         matrix: &mut [f64],
     ) -> Result<(), Fault> {
@@ -93,12 +93,12 @@ impl Element {
         matrix.fill(0.0);
         if self.dilatation {
             match at.from {
-                None => self.dilated_tangent(at, new, matrix)?,
+                None => self.dilated_tangent((at, want), new, matrix)?,
                 Some(from) => self.dilated_tangent_between(from, at, matrix)?,
             }
         } else {
             for point in 0..self.points {
-                let (response, _) = self.response(point, at, new, Want::Tangent)?;
+                let (response, _) = self.response(point, at, new, want)?;
                 let (w, a, gradient) = (
                     self.weighted(point),
                     tangent(&response),

@@ -1,9 +1,10 @@
-//! Looks at the frequencies of elements that deform, chunk by chunk.
+//! Looks at the frequencies of elements that deform, element by element.
 //!
-//! To find the frequencies of an element costs as much as some hundred evaluations of its forces. Those of a chunk are found anew where a
-//! length in one of its elements has changed by more than is asked for since they were found last, or an element was deleted;
-//! an impact changes few of them.
+//! To find the frequency of an element costs as much as some hundred evaluations of its forces. It is found anew where a length in the
+//! element has changed by more than is asked for since it was found last: an impact changes few of them. What is found depends on
+//! the element alone, so that ranks which share elements find the same.
 
+use carom_materials::Want;
 use carom_mesh::ElementId;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -50,30 +51,26 @@ impl FrequencyBound {
     }
 }
 
-/// What is known of the frequencies of the elements of a body: of those of each chunk as of the last look at it.
+/// What is known of the frequencies of the elements of a body, each as of the last look that found it anew.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Looks {
-    chunks: Vec<Look>,
+    /// The bounds of [`FrequencyBound`] of each element, rad/s and rad, in the order of [`Solid::cells`]; of a body whose frequencies never change one
+    /// of all. Not a number where no look has been, zero of deleted elements.
+    bounds: Vec<[f64; 2]>,
+    /// Places of the nodes of each element when its frequency was found, relative to its first node, m.
+    places: Vec<f32>,
 }
 
-/// The elements of a chunk when their frequencies were found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Look {
-    /// The bounds of [`FrequencyBound`], rad/s and rad.
-    frequency: f64,
-    by_compression: f64,
-    /// Shortest distance of two nodes of an element, m.
-    shortest: f64,
-    /// Elements that were not deleted.
-    left: usize,
-    /// Places of the nodes of the chunk, m.
-    x: Vec<[f64; 3]>,
+/// An element when its frequency was found.
+struct Look<'a> {
+    bound: &'a mut [f64; 2],
+    places: &'a mut [f32],
 }
 
 /// What a look at a body tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Bound of the frequencies of its elements, each as of the last look at its chunk.
+    /// Bound of the frequencies of its elements, each as of the last look that found it.
     pub bound: FrequencyBound,
     /// Shortest distance of two nodes of an element as of that look, m.
     pub shortest: f64,
@@ -122,8 +119,9 @@ impl Solid {
         Ok(seen.bound)
     }
 
-    /// Compares the lengths in the elements with those of the last look, finds the frequencies anew in chunks where one has changed by
-    /// more than `worth`, relative, and tells what is known then. A body whose forces are linear has always the same frequencies.
+    /// Compares the lengths in the elements with those of the last look, finds the frequency anew of elements where one has changed by
+    /// more than `worth`, relative, and tells what is known then. Tangents are those of unloading, since an element that flows is stiff
+    /// again as soon as it turns back. A body whose forces are linear has always the same frequencies.
     ///
     /// # Errors
     /// As [`Solid::force`].
@@ -131,17 +129,23 @@ impl Solid {
         let Some(finite) = &self.finite else {
             return Ok(looks.constant(|| self.frequency_bound()));
         };
-        let count = self.blocks().iter().map(|block| block.chunks.len()).sum();
-        looks.chunks.resize_with(count, Look::default);
+        let count = self.cells().len();
+        let stride = self.places_of_look();
+        looks.bounds.resize(count, [f64::NAN; 2]);
+        looks.places.resize(stride * count, 0.0);
         let (mut seen, mut first, mut before) = (Seen::default(), 0, 0);
-        let mut left = &mut looks.chunks[..];
+        let (mut bounds, mut places) = (&mut looks.bounds[..], &mut looks.places[..]);
         for block in self.blocks() {
-            let (of_block, rest) = left.split_at_mut(block.chunks.len());
-            left = rest;
             let (length, kept) = (block.chunk_length(), finite.kept_of_element(block));
-            let pairs = block.chunks.par_iter().zip(of_block).enumerate();
-            let of_chunk = |(k, (chunk, look)): (usize, (&Chunk, &mut Look))| {
-                let begin = first + k * length;
+            let (of_block, rest) = std::mem::take(&mut bounds).split_at_mut(block.len());
+            bounds = rest;
+            let (places_of_block, rest) =
+                std::mem::take(&mut places).split_at_mut(stride * block.len());
+            places = rest;
+            let bounds = of_block.par_chunks_mut(length);
+            let places = places_of_block.par_chunks_mut(stride * length);
+            let chunks = block.chunks.par_iter().zip(bounds.zip(places)).enumerate();
+            let of_chunk = |(k, (chunk, (bounds, places))): (usize, (&Chunk, _))| {
                 let from = before + kept * k * length;
                 let elements = chunk.len(block.kind.table().nodes);
                 let old = &at.old[from..from + kept * elements];
@@ -150,36 +154,69 @@ impl Solid {
                     finite,
                     block,
                     chunk,
-                    first: begin,
+                    first: first + k * length,
                     at: Placement { old, ..*at },
                 };
-                of.look(look, worth)
+                of.look((bounds, places, stride), worth)
             };
             // of two chunks that fail the first is named, whatever the threads
             let both = |a: Result<Seen, Failed>, b: Result<Seen, Failed>| Ok(a?.with(&b?));
-            let all = pairs.map(of_chunk).reduce(|| Ok(Seen::default()), both);
+            let all = chunks.map(of_chunk).reduce(|| Ok(Seen::default()), both);
             seen = seen.with(&all.map_err(|failed| self.failed(failed))?);
             first += block.len();
             before += kept * block.len();
         }
         Ok(seen)
     }
+
+    /// Numbers of [`Looks`] for the places of an element: of the kind with most nodes.
+    fn places_of_look(&self) -> usize {
+        let nodes = self.blocks().iter().map(|block| block.kind.table().nodes);
+        3 * nodes.max().unwrap_or(1).saturating_sub(1)
+    }
+
+    /// Numbers that [`Looks::push`] gives of an element; none of a body whose frequencies never change.
+    pub fn numbers_of_look(&self) -> Option<usize> {
+        self.finite.is_some().then(|| 2 + self.places_of_look())
+    }
 }
 
 impl Looks {
     /// Of a body whose frequencies never change; `find`: their bound, rad/s.
     pub(crate) fn constant(&mut self, find: impl FnOnce() -> f64) -> Seen {
-        let is_renewed = self.chunks.is_empty();
+        let is_renewed = self.bounds.is_empty();
         if is_renewed {
-            self.chunks.push(Look {
-                frequency: find(),
-                ..Look::default()
-            });
+            self.bounds.push([find(), 0.0]);
         }
         Seen {
-            bound: FrequencyBound::of(self.chunks[0].frequency),
+            bound: FrequencyBound::of(self.bounds[0][0]),
             is_renewed,
             ..Seen::default()
+        }
+    }
+
+    /// Whether nothing is known yet.
+    pub fn is_empty(&self) -> bool {
+        self.bounds.is_empty()
+    }
+
+    /// Appends what is known of an element to some numbers.
+    pub fn push(&self, element: usize, numbers: &mut Vec<f64>) {
+        let stride = self.places.len() / self.bounds.len();
+        numbers.extend(self.bounds[element]);
+        let places = &self.places[stride * element..][..stride];
+        numbers.extend(places.iter().map(|place| f64::from(*place)));
+    }
+
+    /// Takes what [`Looks::push`] gave of one of `count` elements.
+    pub fn take(&mut self, (element, count): (usize, usize), numbers: &[f64]) {
+        let stride = numbers.len() - 2;
+        self.bounds.resize(count, [f64::NAN; 2]);
+        self.places.resize(stride * count, 0.0);
+        self.bounds[element].copy_from_slice(&numbers[..2]);
+        let places = &mut self.places[stride * element..][..stride];
+        for (place, number) in places.iter_mut().zip(&numbers[2..]) {
+            *place = *number as f32;
         }
     }
 }
@@ -196,40 +233,45 @@ struct OfChunk<'a> {
 }
 
 impl OfChunk<'_> {
-    fn look(&self, look: &mut Look, worth: f64) -> Result<Seen, Failed> {
-        let elements = self.chunk.len(self.block.kind.table().nodes);
-        let left = match self.finite.limit {
-            None => elements,
-            Some(_) => (0..elements)
-                .filter(|&element| self.is_left(element))
-                .count(),
-        };
-        let mut changed = match !look.x.is_empty() && left == look.left {
-            true => by_nodes!(self.block.kind => self.change(look)),
-            false => f64::INFINITY,
-        };
-        let is_renewed = changed.is_nan() || changed > worth;
-        let mut cell = None;
-        if is_renewed {
-            look.left = left;
-            look.x.clear();
-            let places = 0..self.chunk.nodes.len();
-            look.x.extend(places.map(|place| self.place(place)));
-            look.shortest = by_nodes!(self.block.kind => self.shortest(look));
-            let bound = self.bound()?;
-            (look.frequency, look.by_compression) = (bound.frequency, bound.by_compression);
-            (changed, cell) = (0.0, bound.cell);
+    fn look(
+        &self,
+        (bounds, places, stride): (&mut [[f64; 2]], &mut [f32], usize),
+        worth: f64,
+    ) -> Result<Seen, Failed> {
+        let mut seen = Seen::default();
+        let mut room: Option<Tangents> = None;
+        let looks = bounds.iter_mut().zip(places.chunks_exact_mut(stride));
+        for (number, (bound, places)) in looks.enumerate() {
+            let mut look = Look { bound, places };
+            if !self.is_left(number) {
+                // of a deleted element there is no frequency
+                seen.is_renewed |= look.bound[0] != 0.0;
+                *look.bound = [0.0; 2];
+                continue;
+            }
+            let mut lengths = by_nodes!(self.block.kind => self.compare(number, &look));
+            let mut cell = None;
+            let is_known = !look.bound[0].is_nan() && lengths.changed <= worth;
+            if !is_known {
+                lengths = by_nodes!(self.block.kind => self.keep(number, &mut look));
+                let room = room.get_or_insert_with(|| Tangents::of(self));
+                *look.bound = self.bound(number, room)?;
+                cell = Some(self.body.cells()[self.first + number]);
+                seen.is_renewed = true;
+            }
+            let [frequency, by_compression] = *look.bound;
+            seen = seen.with(&Seen {
+                bound: FrequencyBound {
+                    frequency,
+                    by_compression,
+                    cell,
+                },
+                shortest: lengths.shortest,
+                changed: lengths.changed,
+                is_renewed: false,
+            });
         }
-        Ok(Seen {
-            bound: FrequencyBound {
-                frequency: look.frequency,
-                by_compression: look.by_compression,
-                cell,
-            },
-            shortest: look.shortest,
-            changed,
-            is_renewed,
-        })
+        Ok(seen)
     }
 
     fn kept(&self, element: usize) -> std::ops::Range<usize> {
@@ -252,80 +294,111 @@ impl OfChunk<'_> {
         x
     }
 
-    /// Largest change of a distance of two nodes of an element, relative.
-    fn change<const N: usize>(&self, look: &Look) -> f64 {
-        let mut range: [f64; 2] = [1.0; 2];
-        for (number, element) in self.chunk.connectivity.chunks_exact(N).enumerate() {
-            if !self.is_left(number) {
-                continue;
-            }
-            let before = element_nodes::<N, _>(element, |node| look.x[node]);
-            let now = element_nodes::<N, _>(element, |node| self.place(node));
-            for a in 1..N {
-                for b in 0..a {
-                    let ratio = square(&now[a], &now[b]) / square(&before[a], &before[b]);
-                    range = [range[0].min(ratio), range[1].max(ratio)];
-                }
-            }
-        }
-        let [least, most] = range.map(f64::sqrt);
-        f64::max(1.0 - least, most - 1.0)
+    /// Where the nodes of an element are, m.
+    #[inline(always)]
+    fn now<const N: usize>(&self, number: usize) -> [[f64; 3]; N] {
+        let element = &self.chunk.connectivity[N * number..][..N];
+        element_nodes::<N, _>(element, |node| self.place(node))
     }
 
-    /// Shortest distance of two nodes of an element, m.
-    fn shortest<const N: usize>(&self, look: &Look) -> f64 {
-        let mut least = f64::INFINITY;
-        for (number, element) in self.chunk.connectivity.chunks_exact(N).enumerate() {
-            if !self.is_left(number) {
-                continue;
-            }
-            let x = element_nodes::<N, _>(element, |node| look.x[node]);
-            for a in 1..N {
-                for b in 0..a {
-                    least = least.min(square(&x[a], &x[b]));
-                }
+    /// Shortest distance of two nodes as of the last look, and the largest change of such a distance since.
+    #[inline(always)]
+    fn compare<const N: usize>(&self, number: usize, look: &Look) -> Lengths {
+        let (mut before, now) = ([[0.0; 3]; N], self.now::<N>(number));
+        for (before, kept) in before[1..].iter_mut().zip(look.places.chunks_exact(3)) {
+            *before = [0, 1, 2].map(|i| f64::from(kept[i]));
+        }
+        let (mut range, mut least): ([f64; 2], f64) = ([1.0; 2], f64::INFINITY);
+        for a in 1..N {
+            for b in 0..a {
+                let length = square(&before[a], &before[b]);
+                let ratio = square(&now[a], &now[b]) / length;
+                range = [range[0].min(ratio), range[1].max(ratio)];
+                least = least.min(length);
             }
         }
-        least.sqrt()
+        let [low, high] = range.map(f64::sqrt);
+        Lengths {
+            shortest: least.sqrt(),
+            changed: f64::max(1.0 - low, high - 1.0),
+        }
     }
 
-    /// Bound of the frequencies of its elements that are left: the largest magnitude of an eigenvalue of M_e⁻¹ K_e.
-    fn bound(&self) -> Result<FrequencyBound, Failed> {
+    /// Keeps where the nodes are.
+    fn keep<const N: usize>(&self, number: usize, look: &mut Look) -> Lengths {
+        let now = self.now::<N>(number);
+        let kept = look.places.as_chunks_mut::<3>().0;
+        for (kept, x) in kept.iter_mut().zip(&now[1..]) {
+            *kept = [0, 1, 2].map(|i| (x[i] - now[0][i]) as f32);
+        }
+        Lengths {
+            changed: 0.0,
+            ..self.compare::<N>(number, look)
+        }
+    }
+
+    /// Bounds of the frequency of an element: the largest magnitude of an eigenvalue of M_e⁻¹ K_e.
+    fn bound(&self, number: usize, room: &mut Tangents) -> Result<[f64; 2], Failed> {
         let dim = self.finite.shape.dim();
-        let (mut masses, mut bound) = (Vec::new(), FrequencyBound::default());
-        let collect = &mut |element: &Matrices| masses.extend(element.lumped);
-        self.block.matrices_of(self.chunk, dim, false, collect);
+        let Tangents {
+            element,
+            masses,
+            k,
+            new,
+            scaled,
+            memory,
+        } = room;
+        element.set(&self.finite.shape, self.block, self.chunk, number);
+        let tangent = |local: &Local| element.tangent((local, Want::Unloading), new, k);
+        let found = self
+            .finite
+            .at_element(element, &self.at, self.kept(number), tangent);
+        found.map_err(|fault| (self.first + number, fault))?;
         let nodes = self.block.kind.table().nodes;
-        let mut k = vec![0.0; (dim * nodes).pow(2)];
-        let (mut scaled, mut memory) = (Vec::new(), Vec::new());
-        let mut room = Box::new(Element::room());
-        let mut new = vec![0.0; self.finite.kept_of_element(self.block)];
-        let modulus = self.body.bulk_modulus();
-        for (number, masses) in masses.chunks_exact(nodes).enumerate() {
-            if !self.is_left(number) {
-                continue;
-            }
-            room.set(&self.finite.shape, self.block, self.chunk, number);
-            let tangent = |local: &Local| room.tangent(local, &mut new, &mut k);
-            let kept = self.kept(number);
-            let found = self.finite.at_element(&room, &self.at, kept, tangent);
-            found.map_err(|fault| (self.first + number, fault))?;
-            stability::scale(dim, &k, masses, &mut scaled);
-            let norm = scaled.iter().map(|b| b * b).sum::<f64>().sqrt();
-            let viscous = self.body.coefficients(self.first + number);
-            // no eigenvalue is beyond the norm
-            if viscous.is_some() || norm > bound.frequency * bound.frequency {
-                let square = stability::largest_magnitude(&mut scaled, &mut memory);
-                let frequency = self.body.damped_frequency(self.first + number, square);
-                if frequency > bound.frequency {
-                    bound.frequency = frequency;
-                    bound.cell = Some(self.body.cells()[self.first + number]);
-                }
-                let quadratic = viscous.map_or(0.0, |[_, quadratic]| quadratic);
-                bound.by_compression = bound.by_compression.max(quadratic / modulus * square);
-            }
+        stability::scale(dim, k, &masses[nodes * number..][..nodes], scaled);
+        let square = stability::largest_magnitude(scaled, memory);
+        let viscous = self.body.coefficients(self.first + number);
+        let quadratic = viscous.map_or(0.0, |[_, quadratic]| quadratic);
+        Ok([
+            self.body.damped_frequency(self.first + number, square),
+            quadratic / self.body.bulk_modulus() * square,
+        ])
+    }
+}
+
+/// Lengths in an element.
+struct Lengths {
+    /// Shortest distance of two nodes, m.
+    shortest: f64,
+    /// Largest change of such a distance, relative.
+    changed: f64,
+}
+
+/// Room for the tangents of the elements of a chunk.
+struct Tangents {
+    element: Box<Element>,
+    /// Lumped masses of the nodes of the elements, kg.
+    masses: Vec<f64>,
+    k: Vec<f64>,
+    new: Vec<f64>,
+    scaled: Vec<f64>,
+    memory: Vec<f64>,
+}
+
+impl Tangents {
+    fn of(chunk: &OfChunk) -> Tangents {
+        let (dim, nodes) = (chunk.finite.shape.dim(), chunk.block.kind.table().nodes);
+        let mut masses = Vec::new();
+        let collect = &mut |element: &Matrices| masses.extend(element.lumped);
+        chunk.block.matrices_of(chunk.chunk, dim, false, collect);
+        Tangents {
+            element: Box::new(Element::room()),
+            masses,
+            k: vec![0.0; (dim * nodes).pow(2)],
+            new: vec![0.0; chunk.finite.kept_of_element(chunk.block)],
+            scaled: Vec::new(),
+            memory: Vec::new(),
         }
-        Ok(bound)
     }
 }
 

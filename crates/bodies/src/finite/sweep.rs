@@ -8,6 +8,7 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::tensor::Mat3;
 use carom_elements::MAX_NODES;
+use carom_materials::Want;
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -288,7 +289,7 @@ impl Finite {
             block.set(&mut element, &self.shape, place);
             let old = kept * place..kept * (place + 1);
             self.at_element(&element, at, old, |local| {
-                element.tangent(local, &mut new, k)
+                element.tangent((local, Want::Tangent), &mut new, k)
             })
             .map_err(|fault| (place, fault))?;
         }

@@ -1,6 +1,6 @@
 //! Elements of a body shared out give the forces, energies and histories of all of them together.
 
-use carom_bodies::{Formulation, Kinematics, Placement, Scratch, Share, Stored};
+use carom_bodies::{Formulation, Kinematics, Looks, Placement, Scratch, Seen, Share, Stored};
 use carom_materials::{J2Plasticity, Law, NeoHooke};
 use carom_mesh::generate;
 use carom_testing::Random;
@@ -72,4 +72,50 @@ fn the_forces_of_shares_are_those_of_the_body() {
         let elements: usize = sample.body.kept_of_elements().sum();
         assert_eq!(elements, kept);
     }
+}
+
+fn at(u: &[f64]) -> Placement<'_> {
+    Placement {
+        u,
+        v: &[],
+        from: None,
+        frames: &[],
+        dt: 1.0,
+        old: &[],
+    }
+}
+
+/// What is known of the frequencies of elements goes from shares to the body and back, and is the same: it is that of each element.
+#[test]
+fn the_looks_of_shares_are_those_of_the_body() {
+    let law = Law::NeoHooke(NeoHooke { initial: MATERIAL });
+    let cube = generate::box_("b", [0.0; 3], [1.0; 3], [8; 3], false);
+    let sample = Sample::of("cube", cube, Kinematics::Solid, law, Formulation::Full);
+    let pressed = |by: f64| sample.field(|x| [0.0, 0.0, -by * x[2] * x[2]]);
+    let mut shares = shares(&sample);
+    let (mut whole, mut own) = (Looks::default(), vec![Looks::default(); 3]);
+    let mut renewed = Vec::new();
+    // half of the elements change by more than is asked for at the second look
+    for by in [0.0, 0.1, 0.12] {
+        let u = pressed(by);
+        let seen = sample.body.look(&at(&u), &mut whole, 0.1).unwrap();
+        let mut sum = Seen::default();
+        for (share, looks) in shares.iter_mut().zip(&mut own) {
+            sum = sum.with(&share.look(&at(&u), looks, 0.1).unwrap());
+        }
+        sum.bound.cell = seen.bound.cell;
+        assert_eq!(seen, sum);
+        renewed.push(seen.is_renewed);
+        let (mut gathered, mut numbers) = (Looks::default(), Vec::new());
+        for (share, looks) in shares.iter().zip(&own) {
+            for (element, &place) in share.places().iter().enumerate() {
+                numbers.clear();
+                looks.push(element, &mut numbers);
+                assert_eq!(Some(numbers.len()), sample.body.numbers_of_look());
+                gathered.take((place as usize, 512), &numbers);
+            }
+        }
+        assert_eq!(gathered, whole);
+    }
+    assert_eq!(renewed[..2], [true, true]);
 }

@@ -284,6 +284,25 @@ fn a_block_of_metal_keeps_its_histories_on_several_ranks() {
     compare_on_ranks("metal block", &block(METAL), &[2]);
 }
 
+/// The fall is fast enough that elements shorten, so that steps change: each rank looks at its own elements.
+#[test]
+fn steps_that_follow_the_critical_step_are_those_of_one_process_on_several_ranks() {
+    let text = block(METAL)
+        .replace("-5.0]", "-15.0]")
+        .replace("critical = 0.2", "critical = 0.7");
+    compare_on_ranks("followed steps", &text, &[2, 3]);
+    let folder = tempfile::tempdir().unwrap();
+    let several = folder.path().join("several");
+    for end in run_on(2, &text, &several, u64::MAX) {
+        end.unwrap();
+    }
+    let times: Vec<f64> = rows(&several).iter().map(|row| row[0]).collect();
+    let steps: Vec<f64> = times.windows(2).map(|ends| ends[1] - ends[0]).collect();
+    let [least, most] =
+        [f64::min, f64::max].map(|of| steps[1..].iter().copied().fold(steps[0], of));
+    assert!(least < 0.9 * most, "{least:e} {most:e}");
+}
+
 #[test]
 fn two_bodies_with_friction_and_a_support_are_those_of_one_process_on_several_ranks() {
     compare_on_ranks("pair", PAIR, &[2, 4]);

@@ -51,7 +51,11 @@ impl Driver {
             return Ok(());
         };
         let elements = partition_of(&system, ranks)?;
-        let shared = Shared::new(&system, ranks, (watched, elements));
+        let mut shared = Shared::new(&system, ranks, (watched, elements));
+        shared.take_looks(&system, &self.state.shapes.looks);
+        if !shared.is_first() {
+            self.state.shapes.looks = Vec::new();
+        }
         direct.blocks = shared.blocks(&system);
         direct.sums = vec![Sums::default(); direct.blocks.len()];
         self.shared = Some(Box::new(shared));
@@ -169,13 +173,6 @@ impl Driver {
         }
     }
 
-    /// Brings the motion of all nodes to all ranks.
-    pub(super) fn spread_on_ranks(&mut self) {
-        if let Some(shared) = &mut self.shared {
-            shared.spread(self.system.dim, &mut self.state.motion);
-        }
-    }
-
     /// See [`Stepper::agree`](crate::Stepper::agree).
     pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
         match &self.shared {
@@ -200,7 +197,10 @@ impl Driver {
         shared.ranks.broadcast(&mut said);
         let (looks, is_due) = (said[0] != 0.0, said[1] != 0.0);
         match looks {
-            true => shared.gather(dim, &mut self.state.motion),
+            true => {
+                shared.gather(dim, &mut self.state.motion);
+                shared.gather_looks(&system, &mut self.state.shapes.looks);
+            }
             false => shared.watch(dim, &mut self.state.motion),
         }
         self.report.partial = !looks && shared.is_first();

@@ -43,54 +43,78 @@ impl Driver {
         if !explicit || self.is_static() || !system.bodies.iter().any(changes) {
             return Ok(());
         }
-        // nothing is known of the last pass: all nodes are asked
-        if self
-            .direct
-            .as_ref()
-            .is_some_and(|direct| direct.ready.is_none())
-        {
-            self.spread_on_ranks();
-        }
-        let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
-        let known = !shapes.looks.is_empty();
+        let known = !self.state.shapes.bodies.is_empty();
         if known {
-            let fastest = |part: usize, w: &[f64; 3]| match &self.direct {
-                // the last pass has found them
-                Some(direct) if direct.ready.is_some() => direct.parts[part].fastest,
-                _ => fastest(&system, part, (w, &motion.v)),
-            };
-            let parts = &system.part_of_body;
-            shapes.changed += dt * self.rates.largest(parts, &shapes.bodies, fastest);
-            if shapes.changed <= CHANGE {
+            self.state.shapes.changed += dt * self.rate_of_lengths();
+            if self.state.shapes.changed <= CHANGE {
                 return Ok(());
             }
         }
-        self.spread_on_ranks();
-        let (motion, shapes) = (&self.state.motion, &mut self.state.shapes);
-        shapes
-            .looks
-            .resize_with(system.bodies.len(), Looks::default);
-        shapes.bodies.clear();
+        let found = self.look_at_bodies()?;
         let mut all = Seen::default();
-        for (k, looks) in shapes.looks.iter_mut().enumerate() {
-            let body = &system.bodies[k];
-            let mut shape = None;
-            if system.is_bound_by(k) {
-                let seen = body.look(&system.placement(k, motion), looks, WORTH * CHANGE)?;
-                all = all.with(&seen);
-                shape = changes(body).then(|| Shape {
-                    velocity: system.mean_velocity(k, &motion.v),
-                    shortest: seen.shortest,
-                });
-            }
-            shapes.bodies.push(shape);
+        for (seen, _) in &found {
+            all = all.with(seen);
         }
+        let bodies = system.bodies.iter().zip(&found);
+        let shape = |(body, (seen, velocity)): (&Body, &(Seen, [f64; 3]))| {
+            let shortest = seen.shortest;
+            changes(body).then_some(Shape {
+                velocity: *velocity,
+                shortest,
+            })
+        };
+        let shapes = &mut self.state.shapes;
+        shapes.bodies = bodies.map(shape).collect();
         if all.is_renewed {
             self.state.control.stable = PART * system.critical_with(all.bound.frequency);
             shapes.by_compression = all.bound.by_compression;
         }
         shapes.changed = all.changed;
         Ok(())
+    }
+
+    /// Bound of the rate at which lengths in elements change, relative, 1/s.
+    fn rate_of_lengths(&mut self) -> f64 {
+        let (system, v) = (&*self.system, &self.state.motion.v);
+        let (parts, bodies) = (&system.part_of_body, &self.state.shapes.bodies);
+        // the last pass has found them
+        if let Some(direct) = self.direct.as_ref().filter(|own| own.ready.is_some()) {
+            let fastest = |part: usize, _: &[f64; 3]| direct.parts[part].fastest;
+            return self.rates.largest(parts, bodies, fastest);
+        }
+        match &self.shared {
+            None => {
+                let fastest = |part: usize, w: &[f64; 3]| fastest(system, part, (w, v));
+                self.rates.largest(parts, bodies, fastest)
+            }
+            Some(shared) => {
+                self.rates.refer(parts, bodies);
+                let squares = shared.fastest(system, &self.rates.reference, v);
+                self.rates.largest(parts, bodies, |part, _| squares[part])
+            }
+        }
+    }
+
+    /// What a look at each body tells, and its mean velocity, m/s.
+    ///
+    /// # Errors
+    /// An element without tangent.
+    fn look_at_bodies(&mut self) -> Result<Vec<(Seen, [f64; 3])>, Error> {
+        let (system, motion) = (&*self.system, &self.state.motion);
+        if let Some(shared) = &mut self.shared {
+            return shared.look(system, motion, WORTH * CHANGE);
+        }
+        let looks = &mut self.state.shapes.looks;
+        looks.resize_with(system.bodies.len(), Looks::default);
+        let look = |(k, looks): (usize, &mut Looks)| {
+            let velocity = system.mean_velocity(k, &motion.v);
+            if !system.is_bound_by(k) {
+                return Ok((Seen::default(), velocity));
+            }
+            let at = system.placement(k, motion);
+            Ok((system.bodies[k].look(&at, looks, WORTH * CHANGE)?, velocity))
+        };
+        looks.iter_mut().enumerate().map(look).collect()
     }
 
     /// How many times a step of `dt` (s) is halved for its parts to be below the critical step.

@@ -6,10 +6,11 @@
 //! ([`Shared::gather`]).
 
 pub(crate) mod halo;
+mod looks;
 mod parts;
 mod whole;
 
-use carom_bodies::{Error as BodyError, Placement, Share, Stored};
+use carom_bodies::{Error as BodyError, Looks, Placement, Seen, Share, Stored};
 use carom_ranks::{Message, Ranks};
 
 use crate::blocks::{Block, blocks_of};
@@ -39,6 +40,7 @@ pub(crate) struct Shared {
     sums: Vec<f64>,
     largest: Vec<f64>,
     whole: whole::Whole,
+    looks: looks::SharedLooks,
 }
 
 /// What a step tells all ranks, beside its sums.
@@ -86,6 +88,7 @@ impl Shared {
             sums: Vec::new(),
             largest: Vec::new(),
             whole: whole::Whole::new(system, (&halo, rank), watched, &elements),
+            looks: looks::SharedLooks::new(&elements, ranks.count()),
             halo,
             ranks: ranks.clone(),
             shared_nodes: partition.shared,
@@ -234,9 +237,34 @@ impl Shared {
         self.whole.gather(&self.ranks, dim, motion);
     }
 
-    /// Brings displacements, velocities and histories of all to all ranks.
-    pub(crate) fn spread(&mut self, dim: usize, motion: &mut Motion) {
-        self.whole.spread(&self.ranks, dim, motion);
+    /// Takes what is known of the frequencies of the elements of this rank from what is known of all.
+    pub(crate) fn take_looks(&mut self, system: &System, all: &[Looks]) {
+        self.looks.take(system, &self.bodies, all);
+    }
+
+    /// Brings to the first rank, if there is anything new, what is known of the frequencies of all elements.
+    pub(crate) fn gather_looks(&mut self, system: &System, all: &mut Vec<Looks>) {
+        let of = (&self.ranks, &self.bodies[..]);
+        self.looks.gather(of, system, all);
+    }
+
+    /// As [`carom_bodies::Body::look`], of all bodies, each with the mean velocity (m/s) of its nodes.
+    ///
+    /// # Errors
+    /// That of the first rank which has one, on all ranks.
+    pub(crate) fn look(
+        &mut self,
+        system: &System,
+        motion: &Motion,
+        worth: f64,
+    ) -> Result<Vec<(Seen, [f64; 3])>, Error> {
+        let of = (&self.ranks, &self.halo, &mut self.bodies[..]);
+        self.looks.look(of, (system, motion), worth)
+    }
+
+    /// Largest |v - w|² (m²/s²) over the nodes of each part, with the w of the part.
+    pub(crate) fn fastest(&self, system: &System, w: &[[f64; 3]], v: &[f64]) -> Vec<f64> {
+        looks::fastest((&self.ranks, &self.halo), system, (w, v))
     }
 
     /// Sums the parts, the energies and the forces of supports of a step over the ranks, and tells whether it has `failed` on any, or an

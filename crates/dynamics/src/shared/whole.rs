@@ -158,14 +158,6 @@ impl Whole {
             ranks.exchange(&messages, &mut [], || ());
         }
     }
-
-    /// Brings displacements, velocities and histories of all to all ranks.
-    pub(super) fn spread(&mut self, ranks: &Ranks, dim: usize, motion: &mut Motion) {
-        self.gather(ranks, dim, motion);
-        for vector in [&mut motion.u, &mut motion.v, &mut motion.history] {
-            ranks.broadcast(vector);
-        }
-    }
 }
 
 /// Brings the entries of nodes in system vectors to the first rank.

@@ -219,8 +219,9 @@ fn the_frequency_bound_rises_as_the_body_shortens() {
     assert!((ratio * ratio - 2.5).abs() < 0.1, "{}", ratio * ratio);
 }
 
-/// A bar of 256 hexahedra is eight chunks. Where its last quarter is compressed by a fifth, the frequencies of that quarter are found
-/// anew and are the largest: those of the rest, which is only carried along, stand.
+/// A bar of 256 hexahedra. Where its last quarter is compressed by a fifth, the frequencies of that quarter are found
+/// anew and are the largest: those of the rest, which is only carried along, stand. Lengths are compared with places in single
+/// precision, to 1e-7 of them.
 #[test]
 fn a_look_finds_frequencies_anew_where_elements_have_changed() {
     let (name, law) = elastic()[0];
@@ -236,19 +237,44 @@ fn a_look_finds_frequencies_anew_where_elements_have_changed() {
     };
     let (seen, whole) = look(0.0, 0.05);
     assert!(seen.is_renewed && seen.bound.frequency == whole && seen.changed == 0.0);
-    assert!((seen.shortest - 1.0).abs() < 1e-12);
-    // places have an error of 256 roundings
+    assert!((seen.shortest - 1.0).abs() < 1e-7);
     let (seen, _) = look(0.04, 0.05);
-    assert!(!seen.is_renewed && (seen.changed - 0.04).abs() < 1e-12);
+    assert!(!seen.is_renewed && (seen.changed - 0.04).abs() < 2e-7);
     assert_eq!(seen.bound.frequency, whole);
     let (seen, pressed) = look(0.2, 0.05);
-    assert!(seen.is_renewed && seen.changed < 1e-12 && pressed > whole);
+    assert!(seen.is_renewed && seen.changed < 2e-7 && pressed > whole);
     assert_eq!(seen.bound.frequency, pressed);
-    assert!((seen.shortest - 0.8).abs() < 1e-12);
+    assert!((seen.shortest - 0.8).abs() < 1e-7);
     // back again, and not asked to find them anew
     let (seen, _) = look(0.0, 1.0);
-    assert!(!seen.is_renewed && (seen.changed - 0.25).abs() < 1e-12);
+    assert!(!seen.is_renewed && (seen.changed - 0.25).abs() < 4e-7);
     assert_eq!(seen.bound.frequency, pressed);
+}
+
+/// At yield, rounding decides whether an element flows further. The bound of its frequencies is that of unloading either way, and a fifth
+/// above that of further flow, whose modulus along the bar is κ + 4μ/3 · H/(3μ + H) in place of κ + 4μ/3.
+#[test]
+fn the_frequency_of_an_element_at_yield_is_that_of_unloading() {
+    let (name, law) = super::inelastic()[0];
+    let bar = generate::box_("b", [0.0; 3], [4.0, 1.0, 1.0], [4, 1, 1], false);
+    for formulation in [Formulation::Full, Formulation::BBar] {
+        let sample = Sample::of(name, bar.clone(), Kinematics::Solid, law, formulation);
+        let pressed = |part: f64| sample.field(|x| [-0.2 * part * x[0], 0.0, 0.0]);
+        let mut step = Step::new(&sample);
+        step.old = step.run(&pressed(1.0)).unwrap().2;
+        let bound = |part: f64| {
+            let u = pressed(part);
+            let seen = sample.body.frequency_bound_at(&step.at(&u)).unwrap();
+            let flows = step.run(&u).unwrap().1.dissipated > 0.0;
+            (seen.frequency, flows)
+        };
+        let ((back, still), (on, flows)) = (bound(1.0 - 1e-9), bound(1.0 + 1e-9));
+        assert!(!still && flows, "{formulation:?}");
+        assert!(
+            (back - on).abs() < 1e-7 * on,
+            "{formulation:?}: {back} {on}"
+        );
+    }
 }
 
 /// Compression of the least edge h, with 4 (λ + 2μ)/(ρ h²), is the highest frequency of a brick in each formulation; hourglass
