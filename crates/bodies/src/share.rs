@@ -5,6 +5,7 @@ use std::ops::Range;
 use carom_mesh::ElementId;
 
 use crate::block::{Block, chunk_length};
+use crate::body::Body;
 use crate::chunk::Chunk;
 use crate::finite::{Looks, Placement, Seen, Stored};
 use crate::gather::Gather;
@@ -170,6 +171,11 @@ impl Share {
     /// Where the histories of these elements are in that of the whole body.
     pub fn histories(&self) -> &[Range<usize>] {
         &self.histories
+    }
+
+    /// The elements as a body, and where their histories are in that of the whole body.
+    pub fn into_body(self) -> (Body, Vec<Range<usize>>) {
+        (Body::Solid(self.solid), self.histories)
     }
 
     /// As [`Solid::force`], of these elements; `at.old` and `new` are the histories of the whole body.

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_dynamics::{Alike, Costs, Error, Observer, Outcome, RankShare, march, why_not_on_ranks};
-use carom_output::{Results, Settings, watched};
+use carom_output::checkpoint::Checkpoint;
+use carom_output::{Pieces, Results, Settings, watched};
 use carom_ranks::Ranks;
 
 use crate::build::Built;
@@ -28,15 +29,16 @@ pub fn run_on_ranks(
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<Finished>, Failed> {
     let origin = Origin::of(input, case, &folder);
-    let settings = settings((input, case, built), folder, &origin);
-    let run = shared((ranks, built, &settings), None, &Costs::default())?;
-    let results = || Results::create(settings, Arc::clone(&built.system));
-    go_through((ranks, built), (run, march), results, (progress, stop))
+    let mut settings = settings((input, case, built), folder, &origin);
+    let run = shared((ranks, built, &mut settings), None, &Costs::default())?;
+    let results = |settings| Results::create(settings, Arc::clone(&built.system));
+    let of = (ranks, built, settings);
+    go_through(of, (run, march), (results, None), (progress, stop))
 }
 
 /// What takes the steps together with the other ranks, from the bytes of a state or from the start.
 pub(crate) fn shared(
-    (ranks, built, settings): (&Ranks, &Built, &Settings),
+    (ranks, built, settings): (&Ranks, &Built, &mut Settings),
     saved: Option<&[u8]>,
     costs: &Costs,
 ) -> Result<Stepping, Failed> {
@@ -48,35 +50,65 @@ pub(crate) fn shared(
     });
     let (mut run, nodes) = together(ranks, begun, Failed::Start)?;
     together(ranks, run.share(ranks, &nodes), Failed::Start)?;
+    settings.piece = run.piece(ranks);
     Ok(run)
 }
 
-/// Takes the steps to the end of the case, with results on the first rank.
+/// Takes the steps to the end of the case, with results on the first rank, and pieces of the fields on the others; from a `checkpoint` or from the
+/// start.
 pub(crate) fn go_through(
-    (ranks, built): (&Ranks, &Built),
+    (ranks, built, settings): (&Ranks, &Built, Settings),
     (mut run, march): (Stepping, March),
-    results: impl FnOnce() -> Result<Results, carom_output::Error>,
+    (results, checkpoint): (
+        impl FnOnce(Settings) -> Result<Results, carom_output::Error>,
+        Option<&Checkpoint>,
+    ),
     (progress, stop): (&mut dyn Observer, &dyn Fn() -> bool),
 ) -> Result<Option<Finished>, Failed> {
     let now = Instant::now();
-    let results = match ranks.is_first() {
-        true => results().map(Some),
-        false => Ok(None),
+    let system = Arc::clone(&built.system);
+    let observer = match ranks.is_first() {
+        true => results(settings).map(|results| Either::Results(Box::new(results))),
+        false => match checkpoint {
+            Some(checkpoint) => Pieces::resume(&settings, system, checkpoint),
+            None => Ok(Pieces::create(&settings, system)),
+        }
+        .map(|pieces| Either::Pieces(pieces.map(Box::new))),
     };
-    let Some(mut results) = together(ranks, results, Failed::Output)? else {
-        let outcome = take((ranks, &mut run), march, built.end, (&mut [], &|| false));
-        busiest(ranks, &run);
-        return outcome.map(|_| None).map_err(Failed::Step);
+    let mut results = match together(ranks, observer, Failed::Output)? {
+        Either::Results(results) => results,
+        Either::Pieces(mut pieces) => {
+            let pieces = pieces
+                .as_deref_mut()
+                .map(|pieces| pieces as &mut dyn Observer);
+            let observers: &mut [&mut dyn Observer] = &mut Vec::from_iter(pieces);
+            let outcome = take((ranks, &mut run), march, built.end, (observers, &|| false));
+            let outcome = together(ranks, outcome, Failed::Step);
+            busiest(ranks, &run);
+            return outcome.map(|_| None);
+        }
     };
-    let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
+    let observers: &mut [&mut dyn Observer] = &mut [&mut *results, progress];
     let outcome = take((ranks, &mut run), march, built.end, (observers, stop));
+    // what has failed at the end of another rank has failed here too
+    let text = outcome.as_ref().err().map(Error::to_string);
+    let outcome = match (ranks.first_text(text.as_deref()), outcome) {
+        (Some((rank, cause)), Ok(_)) => Err(Error::OnRank { rank, cause }),
+        (_, own) => own,
+    };
     let share = busiest(ranks, &run);
     let zones = run.zones(built);
-    let finished = conclude((results, outcome), (run.get(), zones), (now, built.end))?;
+    let finished = conclude((*results, outcome), (run.get(), zones), (now, built.end))?;
     Ok(Some(Finished {
         ranks: Some(share),
         ..finished
     }))
+}
+
+/// What a rank writes.
+enum Either {
+    Results(Box<Results>),
+    Pieces(Option<Box<Pieces>>),
 }
 
 /// Takes the steps: of a run whose elements ranks do not share each rank takes all.

@@ -172,12 +172,12 @@ impl Resume {
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Finished>, Failed> {
         let origin = self.origin.of_the_rest(&self.input, &self.case);
-        let settings = settings((&self.input, &self.case, &self.built), self.path, &origin);
+        let mut settings = settings((&self.input, &self.case, &self.built), self.path, &origin);
         let state = Some(&self.checkpoint.state[..]);
         let costs = self.checkpoint.costs()?;
-        let run = shared((ranks, &self.built, &settings), state, &costs)?;
+        let run = shared((ranks, &self.built, &mut settings), state, &costs)?;
         let checkpoint = self.checkpoint;
-        let results = || match self.folder {
+        let results = |settings| match self.folder {
             Some(folder) => Results::resume(
                 folder,
                 &checkpoint,
@@ -188,11 +188,8 @@ impl Resume {
                 path: PathBuf::new(),
             }),
         };
-        go_through(
-            (ranks, &self.built),
-            (run, go_on),
-            results,
-            (progress, stop),
-        )
+        let of = (ranks, &self.built, settings);
+        let begin = (results, Some(&*checkpoint));
+        go_through(of, (run, go_on), begin, (progress, stop))
     }
 }

@@ -226,6 +226,7 @@ pub(crate) fn settings(
         levels: built.levels.clone(),
         history_every: case.output.histories.map(|histories| histories.every.0),
         compress_histories: case.output.compress_histories,
+        piece: None,
         fields: case.output.fields.as_ref().map(|fields| {
             let has = |field| fields.record.contains(&field);
             Fields {

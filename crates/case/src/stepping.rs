@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use carom_dynamics::{Costs, Driver, Error, RankShare, State, Stepper};
+use carom_output::Piece;
 use carom_output::summary::Zones;
 use carom_ranks::Ranks;
 use carom_zones::Whole;
@@ -57,6 +58,18 @@ impl Stepping {
             Stepping::One(driver) => driver.rank_share(),
             Stepping::Apart(_) => None,
         }
+    }
+
+    /// The elements that this rank computes, where each has some of its own.
+    pub(crate) fn piece(&self, ranks: &Ranks) -> Option<Piece> {
+        let Stepping::One(driver) = self else {
+            return None;
+        };
+        Some(Piece {
+            rank: ranks.rank(),
+            ranks: ranks.count(),
+            elements: driver.own_elements()?,
+        })
     }
 
     /// Adds what the run has cost before it was cut.

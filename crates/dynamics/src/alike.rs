@@ -76,6 +76,6 @@ impl Stepper for Alike<'_> {
     }
 
     fn agree(&mut self, own: Going) -> Going {
-        own.of_first(self.ranks)
+        own.of_all(self.ranks)
     }
 }

@@ -33,8 +33,8 @@ pub trait Stepper {
     fn costs(&self) -> Costs;
     /// The contact problem that made the last step fail.
     fn failed_problem(&self) -> Option<FailedProblem<'_>>;
-    /// Whether the run goes on: where several processes take the steps as the first of them says, else `own`. All ask together, before each
-    /// step and at the end.
+    /// Whether the run goes on: where several processes take the steps as the first of them says, unless it has failed on any; else `own`. All
+    /// ask together, before each step and at the end.
     fn agree(&mut self, own: Going) -> Going {
         own
     }
@@ -43,26 +43,41 @@ pub trait Stepper {
     fn bring(&mut self, _looks: bool) {}
 }
 
-/// How a run on several ranks goes on, as the first one says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// How a run on several ranks goes on.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Going {
     /// It takes another step, or is at its end.
     On,
-    /// Somebody asked it to stop.
+    /// Somebody asked the first rank to stop it.
     Stopped,
-    /// Its results could not be written.
-    Failed,
+    /// A rank could not write what it has to: why.
+    Failed {
+        /// The first such rank.
+        rank: usize,
+        /// Why.
+        cause: String,
+    },
 }
 
 impl Going {
-    /// What the first rank says. All ask together.
-    pub(crate) fn of_first(self, ranks: &Ranks) -> Going {
-        let mut said = vec![f64::from(self as u8)];
-        ranks.broadcast(&mut said);
-        match said[0] as u8 {
-            0 => Going::On,
-            1 => Going::Stopped,
-            _ => Going::Failed,
+    /// What all ranks do, of what each says of itself. All ask together.
+    pub(crate) fn of_all(self, ranks: &Ranks) -> Going {
+        let mut said = [
+            f64::from(self == Going::Stopped && ranks.is_first()),
+            f64::from(matches!(self, Going::Failed { .. })),
+        ];
+        ranks.reduce(&mut [], &mut said);
+        if said[1] != 0.0 {
+            let own = match &self {
+                Going::Failed { cause, .. } => Some(cause.as_str()),
+                _ => None,
+            };
+            let (rank, cause) = ranks.first_text(own).unwrap_or_default();
+            return Going::Failed { rank, cause };
+        }
+        match said[0] != 0.0 {
+            true => Going::Stopped,
+            false => Going::On,
         }
     }
 }
@@ -179,7 +194,7 @@ fn steps(
         };
         match run.agree(own) {
             Going::Stopped => return Ok(Outcome::Interrupted),
-            Going::Failed => return Err(Error::FirstRank),
+            Going::Failed { rank, cause } => return Err(Error::OnRank { rank, cause }),
             Going::On if at_end => return Ok(Outcome::Done),
             Going::On => {}
         }
@@ -204,9 +219,10 @@ fn tell(run: &mut dyn Stepper, observers: &mut [&mut dyn Observer]) -> Result<()
     let told = observers
         .iter_mut()
         .try_for_each(|observer| observer.accepted(run));
-    if told.is_err() {
-        // other ranks, which have no observers, wait before their next step
-        run.agree(Going::Failed);
+    if let Err(error) = &told {
+        // other ranks wait before their next step
+        let cause = error.to_string();
+        run.agree(Going::Failed { rank: 0, cause });
     }
     told
 }

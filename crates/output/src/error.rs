@@ -182,6 +182,12 @@ pub enum Error {
     /// The thread that writes fields could not be started.
     #[error("cannot start the thread that writes fields: {0}")]
     Thread(#[source] io::Error),
+    /// Another rank has not written its piece of the fields.
+    #[error("the piece of the fields of another rank has not come: {}", path.display())]
+    Piece {
+        /// The file that is missing.
+        path: PathBuf,
+    },
     /// The thread that writes fields ended before its work.
     #[error("the thread that writes fields is gone")]
     Writer,

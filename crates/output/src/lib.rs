@@ -45,8 +45,8 @@ pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
 pub use results::{
-    BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Results, Settings,
-    Spectrum, Zoning, model_picture, qualities, watched,
+    BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Piece, Pieces, Probe, Reference,
+    Results, Settings, Spectrum, Zoning, model_picture, qualities, watched,
 };
 pub use statistics::{Allowable, Level, Statistics};
 pub use summary::Summary;

@@ -114,6 +114,40 @@ pub fn write(path: &Path, grid: &Grid) -> Result<(), Error> {
     atomic::write(path, |to| document.write(to))
 }
 
+/// The text of a file (`.pvtu`) that lists the pieces of a grid by their names, with the fields of one of them.
+pub(crate) fn list(grid: &Grid, pieces: &[String]) -> String {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" \
+         header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PUnstructuredGrid GhostLevel=\"0\">\n",
+    );
+    let mut arrays = |of: &str, fields: &[Field]| {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "<P{of}>");
+        for field in fields {
+            let _ = writeln!(
+                text,
+                "<PDataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\"/>",
+                field.values.vtk_type(),
+                escape(field.name),
+                field.values.components()
+            );
+        }
+        let _ = writeln!(text, "</P{of}>");
+    };
+    arrays("PointData", grid.point_fields);
+    arrays("CellData", grid.cell_fields);
+    let points = Field {
+        name: "Points",
+        values: Values::Vector(grid.points),
+    };
+    arrays("Points", &[points]);
+    for piece in pieces {
+        let _ = writeln!(text, "<Piece Source=\"{}\"/>", escape(piece));
+    }
+    text.push_str("</PUnstructuredGrid>\n</VTKFile>\n");
+    text
+}
+
 /// Says the first thing in which the parts of the grid do not fit each other.
 fn check(grid: &Grid) -> Result<(), Error> {
     let mut cell_count = 0;

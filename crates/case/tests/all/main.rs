@@ -15,6 +15,7 @@ mod large;
 mod losses;
 mod means;
 mod offset;
+mod pieces;
 mod quadrature;
 mod ranks;
 mod reactions;

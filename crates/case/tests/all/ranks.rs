@@ -108,14 +108,14 @@ scheme.central-difference = {}
 
 const SMALL: &str = r#"elastic = { young = "5 MPa", poisson = 0.3 }"#;
 const FINITE: &str = r#"neo-hooke = { young = "5 MPa", poisson = 0.3 }"#;
-const METAL: &str =
+pub const METAL: &str =
     r#"j2 = { young = "50 MPa", poisson = 0.3, yield-stress = "0.2 MPa", hardening = "1 MPa" }"#;
 
-fn block(material: &str) -> String {
+pub fn block(material: &str) -> String {
     BLOCK.replace("MATERIAL", material)
 }
 
-fn built(text: &str) -> (Input, carom_case::schema::Case, Built) {
+pub fn built(text: &str) -> (Input, carom_case::schema::Case, Built) {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap_or_else(|problems| panic!("{problems:?}"));
     let built = build(&case, &locator, &input).unwrap_or_else(|problems| panic!("{problems:?}"));
@@ -128,7 +128,7 @@ fn after(steps: u64) -> impl Fn() -> bool {
     move || left.replace(left.get().saturating_sub(1)) == 0
 }
 
-fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
+pub fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
     std::thread::scope(|scope| {
         let ranks = threads(count).into_iter();
         let work = &work;
@@ -138,7 +138,7 @@ fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
 }
 
 /// Runs a case on so many ranks, with the end of each.
-fn run_on(
+pub fn run_on(
     count: usize,
     text: &str,
     folder: &Path,

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_bodies::{Distortion, Extreme};
+use carom_bodies::{Distortion, Extreme, Share};
 use carom_ranks::Ranks;
 
 use super::Driver;
@@ -66,6 +66,17 @@ impl Driver {
     /// Whether several ranks take the steps.
     pub(super) fn is_shared(&self) -> bool {
         self.several
+    }
+
+    /// Places of the elements that this rank computes among those of each body, ascending; none where ranks share no elements.
+    pub fn own_elements(&self) -> Option<Vec<Vec<u32>>> {
+        let shared = self.shared.as_ref()?;
+        let of_body = |shares: &[Share; 2]| {
+            let mut places = shares.each_ref().map(Share::places).concat();
+            places.sort_unstable();
+            places
+        };
+        Some(shared.bodies().map(of_body).collect())
     }
 
     /// What this rank has and sends; none of a run in one process.
@@ -176,7 +187,7 @@ impl Driver {
     /// See [`Stepper::agree`](crate::Stepper::agree).
     pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
         match &self.shared {
-            Some(shared) => own.of_first(&shared.ranks),
+            Some(shared) => own.of_all(&shared.ranks),
             None => own,
         }
     }
@@ -228,7 +239,7 @@ impl Shared {
     /// point of each element is looked at.
     fn distortions(&self, u: &[f64], looks: usize) -> Vec<Option<Distortion>> {
         let none = Distortion::default();
-        let of_body = |shares: &[carom_bodies::Share; 2]| {
+        let of_body = |shares: &[Share; 2]| {
             let mut found = [[0.0; 2]; 2];
             let mut small = false;
             for share in shares {

@@ -7,11 +7,25 @@ use carom_dynamics::{Motion, System};
 use crate::results::Fields;
 use crate::vtu::{Field, Values};
 
-/// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa: of Cauchy at finite strain. `histories`: of all
-/// materials at `u`.
-pub(crate) fn cell_stresses(system: &System, u: &[f64], histories: &[f64]) -> Vec<[f64; 6]> {
+/// Bodies of whose cells there are fields, each with the history of its materials.
+pub(crate) type Bodies<'a> = [(&'a Body, &'a [f64])];
+
+/// All bodies; `histories`: of all materials.
+pub(crate) fn all_bodies<'a>(
+    system: &'a System,
+    histories: &'a [f64],
+) -> Vec<(&'a Body, &'a [f64])> {
     let bodies = system.bodies.iter().enumerate();
-    let of_bodies = bodies.flat_map(|(k, body)| body.stresses(u, system.history(k, histories)));
+    bodies
+        .map(|(k, body)| (body, system.history(k, histories)))
+        .collect()
+}
+
+/// Mean stress of each cell in VTK's order xx, yy, zz, xy, yz, xz, Pa: of Cauchy at finite strain.
+pub(crate) fn cell_stresses(bodies: &Bodies, u: &[f64]) -> Vec<[f64; 6]> {
+    let of_bodies = bodies
+        .iter()
+        .flat_map(|(body, history)| body.stresses(u, history));
     of_bodies.map(|(_, stress)| in_order(&stress)).collect()
 }
 
@@ -119,15 +133,16 @@ pub(crate) fn cell_von_mises(stress: &[[f64; 6]], shells: Option<&ShellFields>) 
 }
 
 /// Equivalent plastic strain of each cell, zero in bodies without; `None` if no body has any.
-pub(crate) fn plastic_strains(system: &System, histories: &[f64]) -> Option<Vec<f64>> {
-    let bodies = system.bodies.iter().enumerate();
-    let strains = bodies.map(|(k, body)| body.plastic_strains(system.history(k, histories)));
+pub(crate) fn plastic_strains(bodies: &Bodies) -> Option<Vec<f64>> {
+    let strains = bodies
+        .iter()
+        .map(|(body, history)| body.plastic_strains(history));
     let strains: Vec<Option<Vec<f64>>> = strains.collect();
     if strains.iter().all(Option::is_none) {
         return None;
     }
-    let bodies = system.bodies.iter().zip(strains);
-    let filled = bodies.flat_map(|(body, own)| own.unwrap_or(vec![0.0; body.cells().len()]));
+    let bodies = bodies.iter().zip(strains);
+    let filled = bodies.flat_map(|((body, _), own)| own.unwrap_or(vec![0.0; body.cells().len()]));
     Some(filled.collect())
 }
 

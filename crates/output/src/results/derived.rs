@@ -10,7 +10,7 @@ use carom_dynamics::{Motion, System};
 use carom_elements::{Element, MAX_NODES, map};
 
 use crate::results::Fields;
-use crate::results::cells::{in_order, von_mises};
+use crate::results::cells::{Bodies, in_order, von_mises};
 use crate::vtu::{Field, Values};
 
 /// Those that are asked for; empty otherwise.
@@ -24,21 +24,25 @@ pub(crate) struct Derived {
 }
 
 impl Derived {
-    pub(crate) fn new(system: &System, motion: &Motion, asked: &Fields) -> Derived {
+    pub(crate) fn new(
+        (system, bodies): (&System, &Bodies),
+        motion: &Motion,
+        asked: &Fields,
+    ) -> Derived {
         let mut derived = Derived::default();
         if asked.strain {
-            let strains = strains(system, motion);
+            let strains = strains((system, bodies), motion);
             derived.principal_strain = strains.iter().map(principal).collect();
             derived.strain = strains.iter().map(in_order).collect();
         }
         if asked.principal_stress || asked.nodal_stress {
-            let stresses = stresses(system, motion);
+            let stresses = stresses(bodies, motion);
             if asked.principal_stress {
                 let all = stresses.iter().flatten();
                 derived.principal_stress = all.map(|(_, stress)| principal(stress)).collect();
             }
             if asked.nodal_stress {
-                derived.nodal_stress = at_nodes(system, &stresses);
+                derived.nodal_stress = at_nodes((system, bodies), &stresses);
                 let nodes = derived.nodal_stress.iter();
                 derived.nodal_von_mises = nodes.map(von_mises).collect();
             }
@@ -80,17 +84,17 @@ impl Derived {
 }
 
 /// Volume (m³) and mean stress (Pa) of the cells of each body.
-fn stresses(system: &System, motion: &Motion) -> Vec<Vec<(f64, Mat3)>> {
-    let bodies = system.bodies.iter().enumerate();
-    let of =
-        |(k, body): (usize, &Body)| body.stresses(&motion.u, system.history(k, &motion.history));
-    bodies.map(of).collect()
+fn stresses(bodies: &Bodies, motion: &Motion) -> Vec<Vec<(f64, Mat3)>> {
+    let bodies = bodies.iter();
+    bodies
+        .map(|(body, history)| body.stresses(&motion.u, history))
+        .collect()
 }
 
 /// Stress at each node of the system, Pa: the mean of the cells that have it, weighted by their volumes; zero where there is none.
-fn at_nodes(system: &System, stresses: &[Vec<(f64, Mat3)>]) -> Vec<[f64; 6]> {
+fn at_nodes((system, bodies): (&System, &Bodies), stresses: &[Vec<(f64, Mat3)>]) -> Vec<[f64; 6]> {
     let mut sums = vec![(0.0, [0.0; 6]); system.x.len()];
-    for (body, own) in system.bodies.iter().zip(stresses) {
+    for ((body, _), own) in bodies.iter().zip(stresses) {
         for (cell, (volume, stress)) in body.cells().iter().zip(own) {
             let stress = in_order(stress);
             if !stress.iter().all(|component| component.is_finite()) {
@@ -123,11 +127,11 @@ pub(crate) fn principal(tensor: &Mat3) -> [f64; 3] {
     values
 }
 
-/// Strain at the middle of each cell of all bodies.
-pub(crate) fn strains(system: &System, motion: &Motion) -> Vec<Mat3> {
+/// Strain at the middle of each cell of bodies.
+pub(crate) fn strains((system, bodies): (&System, &Bodies), motion: &Motion) -> Vec<Mat3> {
     let places = system.places(0.0, &motion.u, &motion.frames);
     let mut strains = Vec::new();
-    for body in &system.bodies {
+    for (body, _) in bodies {
         let turns = body.has_finite_motion() || matches!(body, Body::Rigid(_));
         let is_solid = matches!(body, Body::Solid(_) | Body::Rigid(_) | Body::Reduced(_));
         for &cell in body.cells() {

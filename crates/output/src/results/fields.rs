@@ -1,6 +1,6 @@
 //! Fields as VTU and PVD: copied by the run into one of two buffers, derived and written by the background thread.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use carom_dynamics::{State, System};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::results::grids::{SurfaceGrid, Volume};
 use crate::results::snapshot::Snapshot;
-use crate::results::{Fields, Zoning};
+use crate::results::{Fields, Settings, pieces};
 use crate::writer::Writer;
 use crate::{Collection, Error, Folder};
 
@@ -16,6 +16,8 @@ use crate::{Collection, Error, Folder};
 #[derive(Debug)]
 pub(crate) struct FieldOutput {
     fields: Fields,
+    /// In how many pieces the fields are; none where they are whole.
+    pieces: Option<usize>,
     writer: Writer<Snapshot>,
     sent: Sent,
     failed: bool,
@@ -24,10 +26,48 @@ pub(crate) struct FieldOutput {
 /// What was sent to the thread so far.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct Sent {
-    /// Times of the states sent, s.
-    times: Vec<f64>,
+    /// Times of the states sent, s, and in how many pieces each is; none where it is whole.
+    times: Vec<(f64, Option<usize>)>,
     /// Time of the last state seen, s.
     seen: f64,
+}
+
+impl Sent {
+    /// Whether a state of this time (s) is due.
+    pub(super) fn is_due(&self, fields: &Fields, dt: f64, time: f64) -> bool {
+        // instants are sums of steps: a millionth of one is rounding
+        let rounding = 1e-6 * dt;
+        let number = |time: f64| ((time + rounding) / fields.every).floor();
+        self.times.is_empty() || number(time) > number(self.seen)
+    }
+
+    /// That a state of this time (s) was seen.
+    pub(super) fn see(&mut self, time: f64) {
+        self.seen = time;
+    }
+
+    /// Whether the last state sent is of this time, s.
+    pub(super) fn has(&self, time: f64) -> bool {
+        self.times.last().is_some_and(|(last, _)| *last == time)
+    }
+
+    /// That the state of this time (s) is sent.
+    pub(super) fn push(&mut self, time: f64, pieces: Option<usize>) {
+        self.times.push((time, pieces));
+    }
+
+    /// Names of the files of the instant that is sent next.
+    pub(super) fn next(&self, system: &System, pieces: Option<usize>) -> Vec<String> {
+        names(system, self.times.len(), pieces)
+    }
+
+    /// Times (s) of the instants, and the names of their files.
+    fn instants(&self, system: &System) -> Vec<(f64, Vec<String>)> {
+        let instants = self.times.iter().enumerate();
+        instants
+            .map(|(number, (time, pieces))| (*time, names(system, number, *pieces)))
+            .collect()
+    }
 }
 
 /// Buffers of the thread.
@@ -38,18 +78,19 @@ impl FieldOutput {
     pub(crate) fn create(
         folder: &mut Folder,
         system: &Arc<System>,
-        (fields, zoning): (&Fields, Option<&Zoning>),
+        (settings, fields): (&Settings, &Fields),
         sent: Sent,
     ) -> Result<FieldOutput, Error> {
-        let instants = sent.times.iter().enumerate();
-        let instants = instants.map(|(number, time)| (*time, names(system, number)));
-        let instants: Vec<(f64, Vec<String>)> = instants.collect();
+        let instants = sent.instants(system);
         let collection = Collection::go_on(&folder.file("fields.pvd")?, &instants)?;
         let mut files = Files {
             folder: folder.path().to_owned(),
             collection,
             fields: fields.clone(),
-            bodies: Volume::new(system, zoning),
+            bodies: match settings.own_piece() {
+                Some(piece) => Volume::of_piece(system, piece),
+                None => Volume::new(system, settings.zoning.as_ref()),
+            },
             surfaces: (0..system.contacts.len())
                 .map(|contact| SurfaceGrid::new(system, contact))
                 .collect(),
@@ -57,6 +98,7 @@ impl FieldOutput {
         };
         Ok(FieldOutput {
             fields: fields.clone(),
+            pieces: settings.own_piece().map(|piece| piece.ranks),
             writer: Writer::start(vec![Snapshot::default(); BUFFERS], move |s| files.write(s))?,
             sent,
             failed: false,
@@ -77,7 +119,7 @@ impl FieldOutput {
         state: &State,
     ) -> Result<(), Error> {
         let due = self.is_due(system, state.time);
-        self.sent.seen = state.time;
+        self.sent.see(state.time);
         let outcome = match due {
             true => self.send(folder, system, state),
             false => self.writer.check(),
@@ -87,11 +129,13 @@ impl FieldOutput {
     }
 
     /// Whether a state of this time (s) is due.
-    pub(crate) fn is_due(&self, system: &System, time: f64) -> bool {
-        // instants are sums of steps: a millionth of one is rounding
-        let rounding = 1e-6 * system.dt;
-        let number = |time: f64| ((time + rounding) / self.fields.every).floor();
-        self.sent.times.is_empty() || number(time) > number(self.sent.seen)
+    fn is_due(&self, system: &System, time: f64) -> bool {
+        self.sent.is_due(&self.fields, system.dt, time)
+    }
+
+    /// Whether the first of several ranks needs all of a state of this time (s).
+    pub(crate) fn wants_all(&self, system: &System, time: f64) -> bool {
+        self.pieces.is_none() && self.is_due(system, time)
     }
 
     /// Hands over the last state, unless it is there already, waits for the thread, and writes the files of all instants.
@@ -101,7 +145,7 @@ impl FieldOutput {
         system: &System,
         state: &State,
     ) -> Result<(), Error> {
-        let sent = match self.failed || self.sent.times.last() == Some(&state.time) {
+        let sent = match self.failed || self.sent.has(state.time) {
             true => Ok(()),
             false => self.send(folder, system, state),
         };
@@ -115,10 +159,7 @@ impl FieldOutput {
     /// Writes a file of all instants for the bodies and for each contact.
     #[cfg(feature = "hdf5")]
     fn write_whole(&self, folder: &mut Folder, system: &System) -> Result<(), Error> {
-        let instants = self.sent.times.iter().enumerate();
-        let instants: Vec<(f64, Vec<String>)> = instants
-            .map(|(number, time)| (*time, names(system, number)))
-            .collect();
+        let instants = self.sent.instants(system);
         for (number, part) in parts(system).enumerate() {
             let path = folder.file(&format!("fields/{part}.vtkhdf"))?;
             let files = instants.iter();
@@ -136,21 +177,30 @@ impl FieldOutput {
 
     fn send(&mut self, folder: &mut Folder, system: &System, state: &State) -> Result<(), Error> {
         let mut snapshot = self.writer.buffer()?;
-        snapshot.names = names(system, self.sent.times.len());
+        snapshot.names = self.sent.next(system, self.pieces);
         for name in &snapshot.names {
             folder.file(name)?;
         }
+        for rank in 0..self.pieces.unwrap_or(0) {
+            let piece = pieces::path(Path::new(&snapshot.names[0]), rank);
+            folder.file(&piece.to_string_lossy())?;
+        }
         snapshot.fill(&self.fields, state);
         snapshot.first = self.sent.times.is_empty();
-        self.sent.times.push(state.time);
+        self.sent.push(state.time, self.pieces);
         self.writer.send(snapshot)
     }
 }
 
-/// Names of the files of one instant.
-fn names(system: &System, number: usize) -> Vec<String> {
-    parts(system)
-        .map(|part| format!("fields/{part}-{number:06}.vtu"))
+/// Names of the files of one instant; that of the bodies lists their pieces, if there are some.
+fn names(system: &System, number: usize, pieces: Option<usize>) -> Vec<String> {
+    let ending = |part: usize| match (part, pieces) {
+        (0, Some(_)) => "pvtu",
+        _ => "vtu",
+    };
+    let parts = parts(system).enumerate();
+    parts
+        .map(|(k, part)| format!("fields/{part}-{number:06}.{}", ending(k)))
         .collect()
 }
 

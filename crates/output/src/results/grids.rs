@@ -1,8 +1,10 @@
 //! The grids of the fields of one instant: of the bodies, and of the contact points of each contact.
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::Path;
 
+use carom_bodies::Body;
 use carom_contact::law::{Level, Status};
 use carom_contact::{Contact, Integration, Point};
 use carom_dynamics::{Motion, Order, System};
@@ -11,14 +13,19 @@ use carom_mesh::Face;
 
 use crate::Error;
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
-use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
+use crate::results::cells::{
+    ShellFields, all_bodies, cell_stresses, cell_von_mises, deleted, plastic_strains,
+};
 use crate::results::derived::Derived;
+use crate::results::pieces::{self, Piece};
 use crate::results::snapshot::Snapshot;
 use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 
-/// All bodies as one grid on the system's nodes.
+/// All bodies as one grid on the system's nodes, or the elements of one of several ranks on their own.
 pub(super) struct Volume {
+    /// Of a rank its elements.
+    own: Option<Own>,
     cells: Vec<(Kind, Vec<u32>)>,
     /// Number of the body of each cell, in the order of the case.
     body: Vec<i32>,
@@ -30,6 +37,7 @@ pub(super) struct Volume {
 impl Volume {
     pub(super) fn new(system: &System, zoning: Option<&Zoning>) -> Volume {
         let mut volume = Volume {
+            own: None,
             cells: Vec::new(),
             body: Vec::new(),
             zone: Vec::new(),
@@ -44,22 +52,58 @@ impl Volume {
                 }
             }
         }
-        for (number, body) in system.bodies.iter().enumerate() {
+        volume.add_cells(system, &mut system.bodies.iter());
+        volume
+    }
+
+    /// The elements of a rank.
+    pub(super) fn of_piece(system: &System, piece: &Piece) -> Volume {
+        let own = Own::new(system, piece);
+        let mut volume = Volume {
+            own: None,
+            cells: Vec::new(),
+            body: Vec::new(),
+            zone: Vec::new(),
+            weights: [Vec::new(), Vec::new()],
+        };
+        volume.add_cells(system, &mut own.bodies.iter().map(|(body, _)| body));
+        for node in volume.cells.iter_mut().flat_map(|(_, nodes)| nodes) {
+            // the nodes are those of these cells
+            *node = own.nodes.partition_point(|other| other < node) as u32;
+        }
+        Volume {
+            own: Some(own),
+            ..volume
+        }
+    }
+
+    fn add_cells(&mut self, system: &System, bodies: &mut dyn Iterator<Item = &Body>) {
+        for (number, body) in bodies.enumerate() {
             let mut last = None;
             for &cell in body.cells() {
                 let kind = system.mesh.kind(cell);
                 if last != Some(kind) {
-                    volume.cells.push((kind, Vec::new()));
+                    self.cells.push((kind, Vec::new()));
                     last = Some(kind);
                 }
                 let nodes = system.mesh.element_nodes(cell).iter();
-                if let Some((_, block)) = volume.cells.last_mut() {
+                if let Some((_, block)) = self.cells.last_mut() {
                     block.extend(nodes.map(|node| system.number[*node as usize]));
                 }
-                volume.body.push(number as i32);
+                self.body.push(number as i32);
             }
         }
-        volume
+    }
+
+    /// One vector of three components for each point.
+    fn vectors(&self, system: &System, motion: &Motion, order: Order) -> Vec<[f64; 3]> {
+        let Some(own) = &self.own else {
+            return vectors(system, motion, order);
+        };
+        let nodes = own.nodes.iter();
+        nodes
+            .map(|node| system.of_node(*node, motion, order))
+            .collect()
     }
 
     pub(super) fn write(
@@ -69,6 +113,11 @@ impl Volume {
         fields: &Fields,
         snapshot: &Snapshot,
     ) -> Result<(), Error> {
+        let histories = self.own.as_ref().map(|own| own.histories(system, snapshot));
+        let bodies = match (&self.own, &histories) {
+            (Some(own), Some(histories)) => own.with(histories),
+            _ => all_bodies(system, &snapshot.motion.history),
+        };
         let chosen = [
             ("displacement", fields.displacement, Order::Displacement),
             ("velocity", fields.velocity, Order::Velocity),
@@ -76,7 +125,7 @@ impl Volume {
         ];
         let chosen = chosen.into_iter().filter(|(_, on, _)| *on);
         let motions: Vec<(&str, Vec<[f64; 3]>)> = chosen
-            .map(|(name, _, order)| (name, vectors(system, &snapshot.motion, order)))
+            .map(|(name, _, order)| (name, self.vectors(system, &snapshot.motion, order)))
             .collect();
         let point_fields = motions.iter().map(|(name, values)| Field {
             name,
@@ -98,16 +147,16 @@ impl Volume {
             false => Default::default(),
         };
         let stress = match fields.stress {
-            true => cell_stresses(system, &snapshot.motion.u, &snapshot.motion.history),
+            true => cell_stresses(&bodies, &snapshot.motion.u),
             false => Vec::new(),
         };
-        let plastic = plastic_strains(system, &snapshot.motion.history);
+        let plastic = plastic_strains(&bodies);
         let shells = match fields.stress || fields.section_forces {
             true => ShellFields::new(system, &snapshot.motion, &stress),
             false => None,
         };
         let mises = cell_von_mises(&stress, shells.as_ref());
-        let derived = Derived::new(system, &snapshot.motion, fields);
+        let derived = Derived::new((system, &bodies), &snapshot.motion, fields);
         point_fields.extend(derived.point_fields());
         let mut cell_fields = vec![Field {
             name: "body",
@@ -160,7 +209,21 @@ impl Volume {
                 values: Values::Scalar(plastic),
             });
         }
-        let deleted = deleted(system, &snapshot.motion.history);
+        let rank: Vec<i32> = match &self.own {
+            Some(own) => vec![own.rank as i32; self.body.len()],
+            None => Vec::new(),
+        };
+        if self.own.is_some() {
+            cell_fields.push(Field {
+                name: "rank",
+                values: Values::Integer(&rank),
+            });
+        }
+        // elements of ranks are not deleted
+        let deleted = match &self.own {
+            Some(_) => None,
+            None => deleted(system, &snapshot.motion.history),
+        };
         let deleted = deleted.map(|all| all.into_iter().map(i32::from).collect::<Vec<_>>());
         if let Some(deleted) = &deleted {
             cell_fields.push(Field {
@@ -168,20 +231,85 @@ impl Volume {
                 values: Values::Integer(deleted),
             });
         }
-        write(
-            path,
-            &Grid {
-                time: snapshot.time,
-                points: &places(
-                    system,
-                    &system.x,
-                    &vectors(system, &snapshot.motion, Order::Displacement),
-                ),
-                cells: &borrowed(&self.cells),
-                point_fields: &point_fields,
-                cell_fields: &cell_fields,
-            },
-        )
+        let x = match &self.own {
+            Some(own) => Cow::Owned(own.places(system)),
+            None => Cow::Borrowed(&system.x[..]),
+        };
+        let displacement = self.vectors(system, &snapshot.motion, Order::Displacement);
+        let grid = Grid {
+            time: snapshot.time,
+            points: &places(system, &x, &displacement),
+            cells: &borrowed(&self.cells),
+            point_fields: &point_fields,
+            cell_fields: &cell_fields,
+        };
+        let Some(own) = &self.own else {
+            return write(path, &grid);
+        };
+        write(&pieces::path(path, own.rank), &grid)?;
+        match own.rank {
+            0 => pieces::join(path, &grid, own.ranks),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The elements of a rank.
+struct Own {
+    rank: usize,
+    ranks: usize,
+    /// Some elements of each body, and where their histories are in that of all of its.
+    bodies: Vec<(Body, Vec<Range<usize>>)>,
+    /// Their nodes (system numbers), ascending.
+    nodes: Vec<u32>,
+}
+
+impl Own {
+    fn new(system: &System, piece: &Piece) -> Own {
+        let solids = system.bodies.iter().zip(&piece.elements);
+        let bodies = solids.filter_map(|(body, places)| {
+            let solid = body.as_solid()?;
+            Some(solid.share(places.clone()).into_body())
+        });
+        let bodies: Vec<(Body, Vec<Range<usize>>)> = bodies.collect();
+        let mut nodes = Vec::new();
+        for (body, _) in &bodies {
+            for &cell in body.cells() {
+                let own = system.mesh.element_nodes(cell).iter();
+                nodes.extend(own.map(|node| system.number[*node as usize]));
+            }
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        Own {
+            rank: piece.rank,
+            ranks: piece.ranks,
+            bodies,
+            nodes,
+        }
+    }
+
+    /// Histories of the elements of each body.
+    fn histories(&self, system: &System, snapshot: &Snapshot) -> Vec<Vec<f64>> {
+        let bodies = self.bodies.iter().enumerate();
+        let of_body = |(k, (_, ranges)): (usize, &(Body, Vec<Range<usize>>))| {
+            let all = system.history(k, &snapshot.motion.history);
+            let own = ranges.iter().flat_map(|range| &all[range.clone()]);
+            own.copied().collect()
+        };
+        bodies.map(of_body).collect()
+    }
+
+    fn with<'a>(&'a self, histories: &'a [Vec<f64>]) -> Vec<(&'a Body, &'a [f64])> {
+        let bodies = self.bodies.iter().zip(histories);
+        bodies
+            .map(|((body, _), history)| (body, &history[..]))
+            .collect()
+    }
+
+    fn places(&self, system: &System) -> Vec<[f64; 3]> {
+        let nodes = self.nodes.iter();
+        nodes.map(|node| system.x[*node as usize]).collect()
     }
 }
 

@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Results, columns, discrete, exact, fields, figures, histories, impacts, instants, loads, page,
-    stills, totals,
+    Pieces, Results, columns, discrete, exact, fields, figures, histories, impacts, instants,
+    loads, page, stills, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::{Settings, Tables};
@@ -39,6 +39,21 @@ struct Beside(
     totals::Totals,
     Duration,
 );
+
+impl Pieces {
+    /// Of a run that goes on from a checkpoint; none where there is nothing to write.
+    ///
+    /// # Errors
+    /// [`Error::Checkpoint`].
+    pub fn resume(
+        settings: &Settings,
+        system: Arc<System>,
+        checkpoint: &Checkpoint,
+    ) -> Result<Option<Pieces>, Error> {
+        let Gathered((_, _, _, sent), _) = checkpoint.gathered()?;
+        Ok(Pieces::with(settings, system, sent.unwrap_or_default()))
+    }
+}
 
 impl Results {
     /// Opens the results of a run that goes on from a checkpoint: tables and lists are cut back to it, and what was written after it is

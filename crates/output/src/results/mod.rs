@@ -32,6 +32,8 @@ mod lines;
 mod loads;
 pub(crate) mod outlines;
 pub(crate) mod page;
+mod pieces;
+mod rank_pieces;
 mod reduced;
 pub(crate) mod sensor;
 mod settings;
@@ -65,6 +67,8 @@ use sensor::ContactPoint;
 pub use inspect::model_picture;
 pub use page::quality::{BodyQuality, qualities};
 pub use page::tiles::Tile;
+pub use pieces::Piece;
+pub use rank_pieces::Pieces;
 pub use settings::{
     Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum,
 };
@@ -180,7 +184,7 @@ impl Results {
             Some(fields) => Some(FieldOutput::create(
                 &mut folder,
                 &system,
-                (fields, settings.zoning.as_ref()),
+                (&settings, fields),
                 sent,
             )?),
             None => None,
@@ -340,7 +344,7 @@ impl Observer for Results {
             .probes
             .iter()
             .any(|probe| probe.cell.is_some());
-        fields.is_some_and(|fields| fields.is_due(&self.system, time))
+        fields.is_some_and(|fields| fields.wants_all(&self.system, time))
             || self.stills.wants(time, report).contains(&true)
             || self.instants.wants(report)
             || self

@@ -9,6 +9,7 @@ use carom_exact::Solution;
 use carom_mesh::ElementId;
 
 use crate::results::Zoning;
+use crate::results::pieces::Piece;
 use crate::statistics::Allowable;
 use crate::summary::Zones;
 
@@ -41,6 +42,8 @@ pub struct Settings {
     pub compress_histories: bool,
     /// Fields for ParaView; `None`: none.
     pub fields: Option<Fields>,
+    /// Elements of which this rank writes the fields, where each of several writes its own; `None`: the first writes all.
+    pub piece: Option<Piece>,
     /// Exact solution to compare with.
     pub reference: Option<Reference>,
     /// Zones and weights of a model in zones.
@@ -181,4 +184,18 @@ pub struct Ending<'a> {
     pub zones: Option<Zones>,
     /// Wall time of the whole run, reading and factorisation included.
     pub wall: Duration,
+}
+
+impl Settings {
+    /// What this rank writes of fields; none where the first one writes all: alone, for stresses at nodes, which are means over elements of
+    /// several ranks, or for a file of all instants.
+    pub(super) fn own_piece(&self) -> Option<&Piece> {
+        let fields = self.fields.as_ref()?;
+        let whole = fields.nodal_stress
+            || fields.vtkhdf
+            || fields.rotation
+            || fields.section_forces
+            || self.zoning.is_some();
+        self.piece.as_ref().filter(|_| !whole)
+    }
 }

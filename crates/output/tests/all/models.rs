@@ -154,6 +154,7 @@ pub fn settings(folder: &Path) -> Settings {
         fields: None,
         reference: None,
         zoning: None,
+        piece: None,
         warnings: Vec::new(),
         checkpoints: Checkpoints {
             every: None,

@@ -5,7 +5,9 @@ use carom_contact::law::Status;
 use carom_dynamics::{InterfaceState, Motion, Order, System};
 use serde::{Deserialize, Serialize};
 
-use crate::results::cells::{ShellFields, cell_stresses, cell_von_mises, deleted, plastic_strains};
+use crate::results::cells::{
+    ShellFields, all_bodies, cell_stresses, cell_von_mises, deleted, plastic_strains,
+};
 use crate::results::derived::{principal, strains};
 use crate::results::stills::Seen;
 
@@ -81,17 +83,18 @@ impl Still {
             let v = system.of_node(*node, motion, Order::Velocity);
             v.iter().map(|v| v * v).sum::<f64>().sqrt() as f32
         });
-        let stress = cell_stresses(system, &motion.u, &motion.history);
+        let bodies = all_bodies(system, &motion.history);
+        let stress = cell_stresses(&bodies, &motion.u);
         let shells = ShellFields::new(system, motion, &stress);
         let von_mises = cell_von_mises(&stress, shells.as_ref());
-        let plastic = plastic_strains(system, &motion.history);
+        let plastic = plastic_strains(&bodies);
         let deleted = deleted(system, &motion.history);
         let shown = |values: &[f64]| -> Vec<f32> {
             let cells = seen.cells.iter();
             cells.map(|cell| values[*cell as usize] as f32).collect()
         };
         let pressure: Vec<f64> = stress.iter().map(|s| -(s[0] + s[1] + s[2]) / 3.0).collect();
-        let strains = strains(system, motion);
+        let strains = strains((system, &bodies), motion);
         let strains = strains
             .iter()
             .map(principal)
