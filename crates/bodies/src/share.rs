@@ -10,6 +10,7 @@ use crate::chunk::Chunk;
 use crate::finite::{Looks, Placement, Seen, Stored};
 use crate::gather::Gather;
 use crate::solid::Solid;
+use crate::weights::ChunkWeights;
 use crate::{Error, Scratch};
 
 /// Some of the elements of a solid, with the places of what they keep among those of all.
@@ -62,7 +63,7 @@ impl Solid {
         weighted.then_some(NotShared::Weights)
     }
 
-    /// The elements at these places in [`Solid::cells`], ascending. Their weights are left out: what has any is not shared
+    /// The elements at these places in [`Solid::cells`], ascending. Weights of their work are left out: what has any is not shared
     /// ([`Solid::not_shared`]).
     pub fn share(&self, places: Vec<u32>) -> Share {
         let (mut blocks, mut histories) = (Vec::new(), Vec::<Range<usize>>::new());
@@ -114,7 +115,7 @@ impl Solid {
 }
 
 impl Block {
-    /// Some of its elements, by their places, without weights.
+    /// Some of its elements, by their places, with weights of their inertia, as mass scaling gives them, and none of their work.
     fn some(&self, places: &[usize]) -> Block {
         let (per, length) = (self.kind.table().nodes, chunk_length(self.kind));
         let chunk = |own: &[usize]| {
@@ -135,6 +136,14 @@ impl Block {
                 let chunk = &self.chunks[place / length];
                 chunk.viscosity.get(place % length).copied()
             });
+            let inertia = own.iter().filter_map(|&place| {
+                let weights = self.chunks[place / length].weights.as_ref();
+                weights.map(|weights| weights.inertia_of(per, place % length))
+            });
+            let inertia = inertia.collect::<Vec<_>>().concat();
+            let points = &self.stiffness_points;
+            let weights =
+                (!inertia.is_empty()).then(|| ChunkWeights::of_inertia(&inertia, per, points));
             Chunk {
                 nodes: all.iter().map(|node| node.0).collect(),
                 first: all.iter().map(|node| node.1).collect(),
@@ -143,7 +152,7 @@ impl Block {
                     .map(|node| self.chunks[node.2].x[node.3])
                     .collect(),
                 connectivity: nodes.iter().map(at).collect(),
-                weights: None,
+                weights,
                 viscosity: viscosity.collect(),
             }
         };

@@ -115,6 +115,16 @@ impl ChunkWeights {
         }
     }
 
+    /// Those of some elements by their α at the nodes, which lie at the nodes of element after element, with δ = 1.
+    pub(crate) fn of_inertia(inertia: &[f64], nodes: usize, points: &Points) -> ChunkWeights {
+        ChunkWeights::new(inertia, &vec![1.0; inertia.len()], nodes, points)
+    }
+
+    /// α at the nodes of an element.
+    pub(crate) fn inertia_of(&self, nodes: usize, element: usize) -> &[f64] {
+        &self.inertia[nodes * element..][..nodes]
+    }
+
     /// An element whose weight of internal work is below zero or no number, and that weight.
     pub(crate) fn negative_stiffness(&self) -> Option<(usize, f64)> {
         let bad = |w: &f64| w.is_nan() || *w < 0.0;
@@ -124,7 +134,7 @@ impl ChunkWeights {
 
     /// Whether one of the weights of an element differs from point to point by more than rounding.
     pub(crate) fn varies(&self, nodes: usize, element: usize) -> bool {
-        let inertia = self.inertia[nodes * element..][..nodes].iter();
+        let inertia = self.inertia_of(nodes, element).iter();
         let stiffness = self.stiffness.chunks_exact(self.stride);
         uneven(inertia.copied()) || uneven(stiffness.map(|row| row[element]))
     }

@@ -5,8 +5,9 @@
 //! ```
 //!
 //! `weak`: a cube of so many elements along a side for each rank, one behind the other; `strong`: one such cube for all. A rank has one processor.
-//! Printed are the seconds of a step that a tenth of the steps are faster than (other programs do not count there), the mean of all steps (with
-//! pictures, contacts and other programs), and the efficiency of both against the first number of ranks.
+//! Printed are the seconds of a step that a tenth of the steps are faster than, of the median and of the mean, with pictures; and the efficiency of
+//! each against as many runs of one rank at the same time that know nothing of each other: what the machine gives to so many
+//! processors, whatever else they share.
 #![allow(clippy::print_stdout)]
 
 use std::time::Instant;
@@ -38,15 +39,16 @@ impl Observer for Clock {
 }
 
 impl Clock {
-    /// Seconds of a step that a tenth of the steps are faster than, and the mean of all; those at the begin are left out.
-    fn seconds(&self) -> [f64; 2] {
+    /// Seconds of a step that a tenth of the steps are faster than, of the median, and of the mean; those at the begin are left out.
+    fn seconds(&self) -> [f64; 3] {
         let steps = self.0[self.0.len() / 10..].windows(2);
         let mut steps: Vec<f64> = steps
             .map(|ends| (ends[1] - ends[0]).as_secs_f64())
             .collect();
         steps.sort_by(f64::total_cmp);
         let mean = steps.iter().sum::<f64>() / steps.len() as f64;
-        [steps.get(steps.len() / 10).copied().unwrap_or(0.0), mean]
+        let at = |part: usize| steps.get(steps.len() / part).copied().unwrap_or(0.0);
+        [at(10), at(2), mean]
     }
 }
 
@@ -79,7 +81,7 @@ scheme.central-difference = {{}}
     )
 }
 
-fn timed(ranks: &Ranks, text: &str) -> Anyhow<[f64; 2]> {
+fn timed(ranks: &Ranks, text: &str) -> Anyhow<[f64; 3]> {
     let told = |problems| format!("{problems:?}");
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).map_err(told)?;
@@ -90,29 +92,35 @@ fn timed(ranks: &Ranks, text: &str) -> Anyhow<[f64; 2]> {
     let done = run_on_ranks(ranks, parts, folder.path().join("run"), &mut clock, &|| {
         false
     })?;
-    if let Some(done) = done {
-        println!("{:?}", done.ranks);
+    if let Some(share) = done
+        .and_then(|done| done.ranks)
+        .filter(|_| ranks.count() > 1)
+    {
+        println!("{share:?}");
     }
     Ok(clock.seconds())
 }
 
-/// Seconds of a step as the first rank sees them.
-fn on_all(count: usize, text: &str) -> Anyhow<[f64; 2]> {
+/// Runs a case on each of these at the same time; seconds of a step as the slowest of them sees them.
+fn at_once(ranks: Vec<Ranks>, text: &str) -> Anyhow<[f64; 3]> {
     std::thread::scope(|scope| {
-        let ranks = threads(count).into_iter();
         let started: Vec<_> = ranks
+            .into_iter()
             .map(|own| {
-                scope.spawn(move || -> Anyhow<[f64; 2]> {
+                scope.spawn(move || -> Anyhow<[f64; 3]> {
                     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
                     alone.install(|| timed(&own, text))
                 })
             })
             .collect();
-        let mut times = Vec::new();
+        let mut slowest = [0.0; 3];
         for one in started {
-            times.push(one.join().map_err(|_| "a rank has panicked")??);
+            let seconds = one.join().map_err(|_| "a rank has panicked")??;
+            for (slowest, own) in slowest.iter_mut().zip(seconds) {
+                *slowest = f64::max(*slowest, own);
+            }
         }
-        Ok(times[0])
+        Ok(slowest)
     })
 }
 
@@ -122,23 +130,23 @@ fn main() -> Anyhow<()> {
         return Err("weak|strong ELEMENTS STEPS RANKS...".into());
     };
     let (elements, steps) = (elements.parse()?, steps.parse()?);
-    let mut first = None;
+    let own = case(elements, 1, steps);
     for count in counts {
         let count: usize = count.parse()?;
         let weak = kind == "weak";
-        let seconds = on_all(count, &case(elements, if weak { count } else { 1 }, steps))?;
-        let (ranks, begin) = *first.get_or_insert((count, seconds));
-        let efficiency = |k: usize| match weak {
-            true => begin[k] / seconds[k],
-            false => begin[k] / seconds[k] * ranks as f64 / count as f64,
-        };
-        println!(
-            "{kind} {elements}: {count} ranks, {:.3} ms a step, efficiency {:.2}; mean {:.3} ms, {:.2}",
-            1e3 * seconds[0],
-            efficiency(0),
-            1e3 * seconds[1],
-            efficiency(1)
-        );
+        let all = case(elements, if weak { count } else { 1 }, steps);
+        let alone = at_once(vec![Ranks::alone(); count], &own)?;
+        let together = at_once(threads(count), &all)?;
+        println!("{kind} {elements}, {count} ranks, milliseconds a step:");
+        for (k, of) in ["fastest tenth", "median", "mean"].iter().enumerate() {
+            let work = if weak { 1.0 } else { count as f64 };
+            println!(
+                "  {of}: {:.3} alone, {:.3} together, efficiency {:.2}",
+                1e3 * alone[k],
+                1e3 * together[k],
+                alone[k] / together[k] / work
+            );
+        }
     }
     Ok(())
 }

@@ -289,7 +289,8 @@ fn a_block_of_metal_keeps_its_histories_on_several_ranks() {
 fn steps_that_follow_the_critical_step_are_those_of_one_process_on_several_ranks() {
     let text = block(METAL)
         .replace("-5.0]", "-15.0]")
-        .replace("critical = 0.2", "critical = 0.7");
+        .replace("critical = 0.2", "critical = 0.7")
+        .replace("initial =", "mass-scaling.factor = 2.0\ninitial =");
     compare_on_ranks("followed steps", &text, &[2, 3]);
     let folder = tempfile::tempdir().unwrap();
     let several = folder.path().join("several");
