@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use crate::Error;
 use crate::kind::{Counts, Kind};
+use crate::side_by_side::side_by_side;
 use crate::witness::{Shown, look};
 use crate::words::words;
 
@@ -287,11 +288,28 @@ impl Made {
     }
 }
 
-/// Runs these checks, or those of them whose name contains `filter`, and writes one line per row; returns what each found too, and
-/// where somebody `looks` what it has shown.
+impl Check {
+    /// Makes it; `looks` as [`verify`] takes it.
+    fn make(self, (size, looks): (Size, bool)) -> Made {
+        let begin = Instant::now();
+        let (rows, shown) = match looks {
+            true => look(|| (self.run)(size)),
+            false => ((self.run)(size), Shown::default()),
+        };
+        Made {
+            check: self,
+            rows,
+            seconds: begin.elapsed().as_secs_f64(),
+            shown,
+        }
+    }
+}
+
+/// Runs these checks, or those of them whose name contains `filter`, and writes one line per row in the order of the list; returns what
+/// each found too, and where somebody `looks` what it has shown. Checks are made [side by side](side_by_side) unless somebody looks.
 ///
 /// # Errors
-/// Only of `out`; a check that cannot be made is written and counted as failed.
+/// Of `out`, and if no threads can be started; a check that cannot be made is written and counted as failed.
 pub fn verify(
     checks: &[Check],
     filter: Option<&str>,
@@ -301,15 +319,18 @@ pub fn verify(
     let mut verdict = Verdict::default();
     let mut made = Vec::new();
     let wanted = |check: &&Check| filter.is_none_or(|part| check.name.contains(part));
-    for check in checks.iter().filter(wanted) {
-        writeln!(out, "{}: {}", check.name, check.fact)?;
-        let begin = Instant::now();
+    let wanted: Vec<Check> = checks.iter().filter(wanted).copied().collect();
+    // what is shown is kept in one place
+    let workers = if looks {
+        1
+    } else {
+        rayon::current_num_threads()
+    };
+    let make = |check: &Check| check.make((size, looks));
+    side_by_side(&wanted, workers, make, &mut |found: Made| {
         verdict.checks += 1;
-        let (rows, shown) = match looks {
-            true => look(|| (check.run)(size)),
-            false => ((check.run)(size), Shown::default()),
-        };
-        match &rows {
+        writeln!(out, "{}: {}", found.check.name, found.check.fact)?;
+        match &found.rows {
             Ok(rows) => {
                 for row in rows {
                     writeln!(out, "  {row}")?;
@@ -321,16 +342,11 @@ pub fn verify(
                 verdict.unmade += 1;
             }
         }
-        let seconds = begin.elapsed().as_secs_f64();
-        writeln!(out, "  {} in {seconds:.1} s", check.name)?;
+        writeln!(out, "  {} in {:.1} s", found.check.name, found.seconds)?;
         out.flush()?;
-        made.push(Made {
-            check: *check,
-            rows,
-            seconds,
-            shown,
-        });
-    }
+        made.push(found);
+        Ok(())
+    })?;
     writeln!(out, "{verdict}")?;
     Ok((verdict, made))
 }

@@ -30,6 +30,7 @@ mod plates;
 mod points;
 mod pounding;
 mod repeated;
+mod side_by_side;
 mod witness;
 mod words;
 
@@ -332,7 +333,7 @@ registry! {
 /// `looks` what it has shown.
 ///
 /// # Errors
-/// Only of `out`; a case that cannot be computed is written and counted as failed.
+/// Of `out`, and if no threads can be started; a case that cannot be computed is written and counted as failed.
 pub fn verify(
     filter: Option<&str>,
     (size, looks): (Size, bool),

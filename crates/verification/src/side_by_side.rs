@@ -1,0 +1,140 @@
+//! Checks side by side, one on each thread: of most of them the models are too small to keep several threads busy.
+//!
+//! Those that take longest begin first, so that none of them runs alone at the end. What they find does not depend on the threads
+//! (check `threads`).
+
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc;
+
+use rayon::ThreadPoolBuilder;
+
+use crate::check::{Check, Made};
+
+/// Checks that take longest at full size, the longest first. Only the time of all checks depends on this list.
+const LONGEST: [&str; 6] = [
+    "glued-substeps",
+    "arlequin-block",
+    "large-shells",
+    "shell-solid-waves",
+    "beam-solid-waves",
+    "tori",
+];
+
+/// Makes checks, `workers` at a time, each on a thread of its own; hands each to `take` as soon as those before it in the list are
+/// handed over. One worker takes all threads, and keeps the order of the list.
+///
+/// # Errors
+/// Those of `take`, after which no check begins, and of threads that do not start.
+pub(crate) fn side_by_side(
+    checks: &[Check],
+    workers: usize,
+    make: impl Fn(&Check) -> Made + Sync,
+    take: &mut dyn FnMut(Made) -> io::Result<()>,
+) -> io::Result<()> {
+    let workers = workers.min(checks.len());
+    if workers <= 1 {
+        return checks.iter().try_for_each(|check| take(make(check)));
+    }
+    let places = Mutex::new(longest_first(checks).into_iter());
+    let stopped = AtomicBool::new(false);
+    let next = || {
+        let mut places = places.lock().ok()?;
+        places.next().filter(|_| !stopped.load(Ordering::Relaxed))
+    };
+    let (sender, found) = mpsc::channel();
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            let (sender, next, make) = (sender.clone(), &next, &make);
+            let pool = ThreadPoolBuilder::new().num_threads(1).build();
+            let pool = pool.map_err(io::Error::other)?;
+            scope.spawn(move || {
+                while let Some(place) = next() {
+                    let made = pool.install(|| make(&checks[place]));
+                    if sender.send((place, made)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(sender);
+        let mut early = BTreeMap::new();
+        let mut due = 0;
+        for (place, made) in found {
+            early.insert(place, made);
+            while let Some(made) = early.remove(&due) {
+                due += 1;
+                take(made).inspect_err(|_| stopped.store(true, Ordering::Relaxed))?;
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Places in the list, in the order in which they begin.
+fn longest_first(checks: &[Check]) -> Vec<usize> {
+    let rank = |place: &usize| {
+        let longer = LONGEST.iter().position(|name| *name == checks[*place].name);
+        longer.unwrap_or(LONGEST.len())
+    };
+    let mut places: Vec<usize> = (0..checks.len()).collect();
+    places.sort_by_key(rank);
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_are_checks_and_begin_first() {
+        let checks = crate::checks();
+        let begun: Vec<_> = longest_first(&checks)
+            .into_iter()
+            .map(|place| checks[place].name)
+            .collect();
+        assert_eq!(begun[..LONGEST.len()], LONGEST);
+        assert_eq!(begun.len(), checks.len());
+    }
+
+    fn taken(workers: usize, most: usize) -> (io::Result<()>, Vec<&'static str>) {
+        let checks = crate::checks();
+        let make = |check: &Check| Made {
+            check: *check,
+            rows: Ok(Vec::new()),
+            seconds: rayon::current_num_threads() as f64,
+            shown: Default::default(),
+        };
+        let mut names = Vec::new();
+        let ended = side_by_side(&checks, workers, make, &mut |made| {
+            assert!(workers == 1 || made.seconds == 1.0, "more than a thread");
+            names.push(made.check.name);
+            match names.len() < most {
+                true => Ok(()),
+                false => Err(io::ErrorKind::BrokenPipe.into()),
+            }
+        });
+        (ended, names)
+    }
+
+    #[test]
+    fn checks_are_handed_over_in_the_order_of_the_list() {
+        let names: Vec<_> = crate::checks().iter().map(|check| check.name).collect();
+        for workers in [1, 3] {
+            let (ended, taken) = taken(workers, usize::MAX);
+            assert!(ended.is_ok());
+            assert_eq!(taken, names);
+        }
+    }
+
+    #[test]
+    fn a_failure_of_the_output_ends_it() {
+        for workers in [1, 3] {
+            let (ended, taken) = taken(workers, 4);
+            assert!(ended.is_err());
+            assert_eq!(taken.len(), 4);
+        }
+    }
+}
