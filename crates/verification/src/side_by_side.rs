@@ -14,7 +14,7 @@ use rayon::ThreadPoolBuilder;
 use crate::check::{Check, Made};
 
 /// Checks that take longest at full size, the longest first. Only the time of all checks depends on this list.
-const LONGEST: [&str; 6] = [
+pub const LONGEST: [&str; 6] = [
     "glued-substeps",
     "arlequin-block",
     "large-shells",
@@ -28,7 +28,7 @@ const LONGEST: [&str; 6] = [
 ///
 /// # Errors
 /// Those of `take`, after which no check begins, and of threads that do not start.
-pub(crate) fn side_by_side(
+pub fn side_by_side(
     checks: &[Check],
     workers: usize,
     make: impl Fn(&Check) -> Made + Sync,
@@ -74,7 +74,7 @@ pub(crate) fn side_by_side(
 }
 
 /// Places in the list, in the order in which they begin.
-fn longest_first(checks: &[Check]) -> Vec<usize> {
+pub fn longest_first(checks: &[Check]) -> Vec<usize> {
     let rank = |place: &usize| {
         let longer = LONGEST.iter().position(|name| *name == checks[*place].name);
         longer.unwrap_or(LONGEST.len())
@@ -82,59 +82,4 @@ fn longest_first(checks: &[Check]) -> Vec<usize> {
     let mut places: Vec<usize> = (0..checks.len()).collect();
     places.sort_by_key(rank);
     places
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_longest_are_checks_and_begin_first() {
-        let checks = crate::checks();
-        let begun: Vec<_> = longest_first(&checks)
-            .into_iter()
-            .map(|place| checks[place].name)
-            .collect();
-        assert_eq!(begun[..LONGEST.len()], LONGEST);
-        assert_eq!(begun.len(), checks.len());
-    }
-
-    fn taken(workers: usize, most: usize) -> (io::Result<()>, Vec<&'static str>) {
-        let checks = crate::checks();
-        let make = |check: &Check| Made {
-            check: *check,
-            rows: Ok(Vec::new()),
-            seconds: rayon::current_num_threads() as f64,
-            shown: Default::default(),
-        };
-        let mut names = Vec::new();
-        let ended = side_by_side(&checks, workers, make, &mut |made| {
-            assert!(workers == 1 || made.seconds == 1.0, "more than a thread");
-            names.push(made.check.name);
-            match names.len() < most {
-                true => Ok(()),
-                false => Err(io::ErrorKind::BrokenPipe.into()),
-            }
-        });
-        (ended, names)
-    }
-
-    #[test]
-    fn checks_are_handed_over_in_the_order_of_the_list() {
-        let names: Vec<_> = crate::checks().iter().map(|check| check.name).collect();
-        for workers in [1, 3] {
-            let (ended, taken) = taken(workers, usize::MAX);
-            assert!(ended.is_ok());
-            assert_eq!(taken, names);
-        }
-    }
-
-    #[test]
-    fn a_failure_of_the_output_ends_it() {
-        for workers in [1, 3] {
-            let (ended, taken) = taken(workers, 4);
-            assert!(ended.is_err());
-            assert_eq!(taken.len(), 4);
-        }
-    }
 }
