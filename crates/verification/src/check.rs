@@ -326,8 +326,9 @@ pub fn verify(
     } else {
         rayon::current_num_threads()
     };
-    let make = |check: &Check| check.make((size, looks));
-    side_by_side(&wanted, workers, make, &mut |found: Made| {
+    let names: Vec<&str> = wanted.iter().map(|check| check.name).collect();
+    let make = |place: usize| wanted[place].make((size, looks));
+    side_by_side(&names, workers, make, &mut |found: Made| {
         verdict.checks += 1;
         writeln!(out, "{}: {}", found.check.name, found.check.fact)?;
         match &found.rows {

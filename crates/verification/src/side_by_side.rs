@@ -11,8 +11,6 @@ use std::sync::mpsc;
 
 use rayon::ThreadPoolBuilder;
 
-use crate::check::{Check, Made};
-
 /// Checks that take longest at full size, the longest first. Only the time of all checks depends on this list.
 pub const LONGEST: [&str; 6] = [
     "glued-substeps",
@@ -23,22 +21,22 @@ pub const LONGEST: [&str; 6] = [
     "tori",
 ];
 
-/// Makes checks, `workers` at a time, each on a thread of its own; hands each to `take` as soon as those before it in the list are
-/// handed over. One worker takes all threads, and keeps the order of the list.
+/// Makes the checks of these names, `workers` at a time, each on a thread of its own; `make` has the place of a check in the list. Hands each
+/// to `take` as soon as those before it in the list are handed over. One worker takes all threads, and keeps the order of the list.
 ///
 /// # Errors
 /// Those of `take`, after which no check begins, and of threads that do not start.
-pub fn side_by_side(
-    checks: &[Check],
+pub fn side_by_side<Made: Send>(
+    names: &[&str],
     workers: usize,
-    make: impl Fn(&Check) -> Made + Sync,
+    make: impl Fn(usize) -> Made + Sync,
     take: &mut dyn FnMut(Made) -> io::Result<()>,
 ) -> io::Result<()> {
-    let workers = workers.min(checks.len());
+    let workers = workers.min(names.len());
     if workers <= 1 {
-        return checks.iter().try_for_each(|check| take(make(check)));
+        return (0..names.len()).try_for_each(|place| take(make(place)));
     }
-    let places = Mutex::new(longest_first(checks).into_iter());
+    let places = Mutex::new(longest_first(names).into_iter());
     let stopped = AtomicBool::new(false);
     let next = || {
         let mut places = places.lock().ok()?;
@@ -52,7 +50,7 @@ pub fn side_by_side(
             let pool = pool.map_err(io::Error::other)?;
             scope.spawn(move || {
                 while let Some(place) = next() {
-                    let made = pool.install(|| make(&checks[place]));
+                    let made = pool.install(|| make(place));
                     if sender.send((place, made)).is_err() {
                         return;
                     }
@@ -74,12 +72,12 @@ pub fn side_by_side(
 }
 
 /// Places in the list, in the order in which they begin.
-pub fn longest_first(checks: &[Check]) -> Vec<usize> {
+pub fn longest_first(names: &[&str]) -> Vec<usize> {
     let rank = |place: &usize| {
-        let longer = LONGEST.iter().position(|name| *name == checks[*place].name);
+        let longer = LONGEST.iter().position(|name| *name == names[*place]);
         longer.unwrap_or(LONGEST.len())
     };
-    let mut places: Vec<usize> = (0..checks.len()).collect();
+    let mut places: Vec<usize> = (0..names.len()).collect();
     places.sort_by_key(rank);
     places
 }
