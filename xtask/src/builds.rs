@@ -1,14 +1,14 @@
 //! The README's two commands and the lints share one build of the dependencies.
 //!
-//! If a test dependency switches on a feature that faer sees, `cargo test` compiles faer and all below it a second time.
+//! If a test dependency switches on a feature that faer or a crate of ours sees, `cargo test` compiles that and all above it a second time.
 //! A file of a compiled crate carries a hash of its features: the same crate in two files is the same crate built twice.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// The crate that is dear to build; all below it is built with it.
-const DEAR: &str = "faer";
+/// Beginnings of the names of crates that are dear to build: all below faer is built with it, and ours are above all others.
+const DEAR: [&str; 2] = ["faer", "carom_"];
 
 /// Compiled files by name of the crate.
 type Compiled = BTreeMap<String, BTreeSet<String>>;
@@ -21,18 +21,37 @@ pub fn check(root: &Path) -> Vec<String> {
         (Ok(built), Ok(tested)) => (built, tested),
         (Err(problem), _) | (_, Err(problem)) => return vec![problem],
     };
-    let Some(first) = built.get(DEAR) else {
+    if let Some(missing) = DEAR
+        .iter()
+        .find(|dear| !built.keys().any(|name| name.starts_with(**dear)))
+    {
         return vec![format!(
-            "`cargo build` did not name {DEAR}: has cargo changed its messages?"
+            "`cargo build` did not name {missing}: has cargo changed its messages?"
         )];
-    };
-    match tested.get(DEAR) {
-        Some(second) if second.is_subset(first) => Vec::new(),
-        _ => vec![format!(
-            "{DEAR} is compiled twice, for `cargo build` and for `cargo test`: a test dependency switches on a feature \
-             of it or of a crate below it (docs/src/developer/build.md)"
+    }
+    let twice = twice(&built, &tested);
+    match twice.is_empty() {
+        true => Vec::new(),
+        false => vec![format!(
+            "compiled twice, for `cargo build` and for `cargo test`: {}; a test dependency switches on a feature of them or of a crate \
+             below (docs/src/developer/build.md)",
+            twice.join(", ")
         )],
     }
+}
+
+/// Dear crates of the program that the tests take from other files.
+fn twice<'a>(built: &'a Compiled, tested: &Compiled) -> Vec<&'a str> {
+    let dear = |name: &str| DEAR.iter().any(|dear| name.starts_with(dear));
+    let same = |name, first| {
+        tested
+            .get(name)
+            .is_some_and(|second: &BTreeSet<_>| second.is_subset(first))
+    };
+    let twice = built
+        .iter()
+        .filter(|(name, first)| dear(name) && !same(*name, *first));
+    twice.map(|(name, _)| name.as_str()).collect()
 }
 
 /// Libraries that a command compiles or finds compiled.
@@ -75,7 +94,24 @@ fn artifact(message: &str) -> Option<(String, String)> {
 
 #[cfg(test)]
 mod tests {
-    use super::artifact;
+    use std::collections::BTreeSet;
+
+    use super::{Compiled, artifact, twice};
+
+    #[test]
+    fn a_dear_crate_in_another_file_is_compiled_twice() {
+        let of = |files: [&str; 3]| -> Compiled {
+            let names = ["carom_mesh", "faer", "csv"].map(str::to_owned);
+            let files = files.map(|file| BTreeSet::from([file.to_owned()]));
+            names.into_iter().zip(files).collect()
+        };
+        let built = of(["mesh-1", "faer-1", "csv-1"]);
+        assert!(twice(&built, &of(["mesh-1", "faer-1", "csv-2"])).is_empty());
+        assert_eq!(
+            twice(&built, &of(["mesh-2", "faer-1", "csv-1"])),
+            ["carom_mesh"]
+        );
+    }
 
     #[test]
     fn libraries_are_found_in_the_messages_of_cargo() {

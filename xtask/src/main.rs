@@ -2,7 +2,7 @@
 //! chapter` makes the measured tables of the manual anew, `cargo xtask pages` the texts that pages include.
 //!
 //! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`,
-//! `circles`), format,
+//! `circles`), the lock file of the Python package (`lock`), format,
 //! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command, and reports in a browser
 //! where one is installed (`page`).
 
@@ -16,6 +16,7 @@ mod commands;
 mod docs;
 mod files;
 mod layers;
+mod lock;
 mod page;
 mod pages;
 mod place;
@@ -32,11 +33,12 @@ const DOC: &str = "cargo doc --release --workspace --no-deps";
 /// A named check: what is wrong, one line each, or nothing.
 type Check = (&'static str, fn(&Path) -> Vec<String>);
 
-const CHECKS: [Check; 10] = [
+const CHECKS: [Check; 11] = [
     ("files", files::check),
     ("documentation", docs::check),
     ("layers", layers::check),
     ("circles", circles::check),
+    ("lock", lock::check),
     ("format", |root| command(root, "cargo fmt --all -- --check")),
     ("lints", |root| command(root, CLIPPY)),
     ("pages of the API", |root| command(root, DOC)),

@@ -123,7 +123,7 @@ fn read_one(file: &Sound) -> bool {
     match end.to_str() {
         Some("state") => Resume::open(&file.folder, &[]).is_ok_and(|run| run.report().is_ok()),
         Some("toml" | "csv") => built(&file.folder.join("case.toml")).is_ok(),
-        _ => carom_mesh::read::read(&file.copy).is_ok_and(|mesh| {
+        _ => carom_med::read(&file.copy).is_ok_and(|mesh| {
             assert_consistent(&mesh);
             true
         }),

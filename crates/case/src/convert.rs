@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use carom_mesh::read::{ReadError, read};
+use carom_med::read;
+use carom_mesh::read::ReadError;
 use carom_mesh::{ElementId, Mesh};
 use carom_output::vtu::{self, Cells, Field, Grid, Values};
 use thiserror::Error as ThisError;

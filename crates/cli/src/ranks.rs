@@ -24,7 +24,7 @@ pub fn with_ranks(takes: bool, work: impl FnOnce(&Ranks) -> u8) -> u8 {
 
 #[cfg(feature = "mpi")]
 fn begun(takes: bool, work: impl FnOnce(&Ranks) -> u8) -> u8 {
-    let Some((session, ranks)) = carom_ranks::begin() else {
+    let Some((session, ranks)) = carom_mpi::begin() else {
         err!("error: MPI did not begin");
         return FAILED;
     };

@@ -6,6 +6,4 @@
 mod damage;
 mod gmsh;
 mod inp;
-#[cfg(feature = "hdf5")]
-mod med;
 mod vtu;

@@ -17,6 +17,16 @@ pub struct OwnRows<'a> {
     pub places: Vec<f64>,
 }
 
+/// Solves with a matrix whose rows ranks share.
+pub trait Engine: Send + Sync {
+    /// x of A x = b, whole on all ranks, and the iterations taken. They end where the residual falls below `tolerance` times that of x = 0,
+    /// in the norm of the preconditioner.
+    ///
+    /// # Errors
+    /// Iterations that do not end, with what the engine says.
+    fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> Result<usize, Unsolved>;
+}
+
 /// Why a solve did not end.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unsolved {

@@ -4,6 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::engine::{Engine, Graph, OwnRows};
+
 /// Numbers to or from a rank; their count is known to both.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Message {
@@ -14,7 +16,7 @@ pub struct Message {
 }
 
 /// What carries the messages.
-pub(crate) trait Link: Send + Sync {
+pub trait Link: Send + Sync {
     /// This rank, and the number of all.
     fn place(&self) -> [usize; 2];
     /// Sends and receives; computes `meanwhile` while messages are under way.
@@ -25,9 +27,23 @@ pub(crate) trait Link: Send + Sync {
     fn broadcast(&self, values: &mut Vec<f64>);
     /// Gives each rank's own part of some numbers to all others; `starts`: where the parts begin, and their end.
     fn gather(&self, values: &mut [f64], starts: &[usize]);
-    /// Whether these ranks are those of an engine.
+    /// Whether these ranks are those of an engine, which makes the two that follow.
     fn has_engine(&self) -> bool {
         false
+    }
+    /// The solver of [`Ranks::engine`].
+    ///
+    /// # Errors
+    /// What the engine says.
+    fn engine(&self, _ranks: &Ranks, _rows: &OwnRows) -> Result<Option<Box<dyn Engine>>, String> {
+        Ok(None)
+    }
+    /// The parts of [`Ranks::parts_of_graph`].
+    ///
+    /// # Errors
+    /// What the engine says.
+    fn parts_of_graph(&self, _ranks: &Ranks, _graph: &Graph) -> Result<Option<Vec<u32>>, String> {
+        Ok(None)
     }
 }
 
@@ -60,7 +76,8 @@ impl Ranks {
         }
     }
 
-    pub(crate) fn over(link: Arc<dyn Link>) -> Ranks {
+    /// The ranks whose messages `link` carries.
+    pub fn over(link: Arc<dyn Link>) -> Ranks {
         Ranks {
             link: Some(link),
             sent: Arc::default(),
@@ -124,6 +141,27 @@ impl Ranks {
     /// Whether an engine solves linear equations over these ranks: PETSc, with the feature `petsc`.
     pub fn has_engine(&self) -> bool {
         self.link.as_ref().is_some_and(|link| link.has_engine())
+    }
+
+    /// The engine's solver of a matrix of which each rank gives its rows; none without an engine.
+    ///
+    /// # Errors
+    /// What the engine says.
+    pub fn engine(&self, rows: &OwnRows) -> Result<Option<Box<dyn Engine>>, String> {
+        self.link
+            .as_ref()
+            .map_or(Ok(None), |link| link.engine(self, rows))
+    }
+
+    /// The part of each element by the engine, in which elements of different parts share few faces; none without an engine. All ranks ask
+    /// together.
+    ///
+    /// # Errors
+    /// What the engine says.
+    pub fn parts_of_graph(&self, graph: &Graph) -> Result<Option<Vec<u32>>, String> {
+        self.link
+            .as_ref()
+            .map_or(Ok(None), |link| link.parts_of_graph(self, graph))
     }
 
     /// Where the parts of `count` things begin that ranks share in their order, and their end.

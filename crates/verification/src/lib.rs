@@ -2,7 +2,7 @@
 //!
 //! One file per case: its header states the problem, the closed solution, where the reference comes from, and why the
 //! tolerance is what it is. A case is a [`Check`] that computes rows (quantity, value, what it must be, [`Kind`] of what
-//! judges it) at two sizes: the tests of this crate run all quick ones, [`verify`] the size that it is asked for.
+//! judges it) at two sizes: the tests of this crate (`tests/all`) run all quick ones, [`verify`] the size that it is asked for.
 //!
 //! Adding a case: one file, its `mod` line, its name in the list below.
 
@@ -30,6 +30,7 @@ mod plates;
 mod points;
 mod pounding;
 mod repeated;
+mod side_by_side;
 mod witness;
 mod words;
 
@@ -171,7 +172,146 @@ pub use error::Error;
 pub use kind::{Counts, Kind};
 pub use witness::{Compared, Shown};
 
-/// Makes of one list of case modules the registry and one test per case at its quick size.
+/// Gives the list of case modules to a macro.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! cases {
+    ($take:ident) => {
+        $take! {
+            adaptive
+            adaptive_bars
+            adaptive_features
+            arlequin_bars
+            arlequin_block
+            arlequin_energy
+            arlequin_large
+            arlequin_oblique
+            arlequin_pulse
+            arlequin_stability
+            arlequin_start
+            assembly_row
+            bar_on_stop
+            bar_dropped
+            bar_on_wall
+            bars_central_difference
+            bars_compliance
+            bars_contact_stabilised
+            bars_convergence
+            bars_damped
+            bars_massless
+            bars_newmark
+            bars_projection
+            bars_schemes
+            bars_stages
+            bars_theta
+            base_motion
+            beam_contact
+            beam_deflections
+            beam_frequencies
+            beam_joints
+            large_beams
+            large_shells
+            beam_on_stop
+            beam_pulse
+            beam_solid_impact
+            beam_solid_large
+            beam_solid_patch
+            beam_solid_waves
+            block_drop
+            blocks
+            blocks_as_bars
+            bouncing_mass
+            breathing_tube
+            closed_field_as_printed
+            combinations
+            contact_patch
+            connected_parts
+            conveyor
+            coulomb_oscillator
+            crushed_stop
+            crushed_tube
+            deletion
+            elastic_plastic_bars
+            elastic_plastic_beams
+            elastic_plastic_shells
+            energy_identity
+            energy_identity_features
+            explicit_implicit
+            first_force
+            glued_rotating
+            glued_substeps
+            hertz_cylinder
+            hertz_impact
+            hertz_spheres
+            interface_problems
+            invariance
+            ironing
+            iterative_solver
+            knocking_oscillators
+            long_run
+            mass_on_stop
+            modal_damping
+            modes
+            oblique_bar
+            one_point_shells
+            orbiting_mass
+            order
+            order_features
+            plastic_wave
+            plates
+            pounding
+            quadrature
+            random_field
+            reduced_bodies
+            rejections
+            rejections_features
+            restitution
+            resume
+            resume_features
+            rigid_cube
+            rigid_hammer
+            rigid_sphere
+            rigid_top
+            ring_sector
+            rings
+            rod_in_grid
+            rubbing_stops
+            sdnl111
+            sdnl111_bars
+            self_contact
+            shell_mortar
+            shell_sections
+            shell_edges
+            shell_self_contact
+            shapes
+            shell_benchmarks
+            shell_solid_impact
+            shell_solid_large
+            shell_solid_patch
+            shell_solid_waves
+            shock_front
+            sliding_block
+            sliding_work
+            spinning_bar
+            spinning_ring
+            static_links
+            stick_slip
+            supports
+            synthetic_record
+            taylor_bar
+            taylor_bar_steel
+            threads
+            threads_features
+            tied_surfaces
+            tori
+            viability
+            zones_glued_at_contact
+            zones_in_contact
+        }
+    };
+}
+
+/// Makes of the list of case modules the registry.
 macro_rules! registry {
     ($($case:ident)*) => {
         /// All cases.
@@ -180,159 +320,50 @@ macro_rules! registry {
         }
 
         /// Names of all cases with the texts of their files.
-        fn sources() -> Vec<(&'static str, &'static str)> {
+        #[doc(hidden)]
+        pub fn sources() -> Vec<(&'static str, &'static str)> {
             vec![$(($case::CHECK.name, include_str!(concat!(stringify!($case), ".rs")))),*]
         }
 
-        #[cfg(test)]
-        mod quick {
-            $(
-                #[test]
-                fn $case() {
-                    super::assert_quick(&super::$case::CHECK);
-                }
-            )*
+        /// The case of a module.
+        #[doc(hidden)]
+        pub fn of_module(module: &str) -> Option<Check> {
+            match module {
+                $(stringify!($case) => Some($case::CHECK),)*
+                _ => None,
+            }
         }
     };
 }
 
-registry! {
-    adaptive
-    adaptive_bars
-    adaptive_features
-    arlequin_bars
-    arlequin_block
-    arlequin_energy
-    arlequin_large
-    arlequin_oblique
-    arlequin_pulse
-    arlequin_stability
-    arlequin_start
-    assembly_row
-    bar_on_stop
-    bar_dropped
-    bar_on_wall
-    bars_central_difference
-    bars_compliance
-    bars_contact_stabilised
-    bars_convergence
-    bars_damped
-    bars_massless
-    bars_newmark
-    bars_projection
-    bars_schemes
-    bars_stages
-    bars_theta
-    base_motion
-    beam_contact
-    beam_deflections
-    beam_frequencies
-    beam_joints
-    large_beams
-    large_shells
-    beam_on_stop
-    beam_pulse
-    beam_solid_impact
-    beam_solid_large
-    beam_solid_patch
-    beam_solid_waves
-    block_drop
-    blocks
-    blocks_as_bars
-    bouncing_mass
-    breathing_tube
-    closed_field_as_printed
-    combinations
-    contact_patch
-    connected_parts
-    conveyor
-    coulomb_oscillator
-    crushed_stop
-    crushed_tube
-    deletion
-    elastic_plastic_bars
-    elastic_plastic_beams
-    elastic_plastic_shells
-    energy_identity
-    energy_identity_features
-    explicit_implicit
-    first_force
-    glued_rotating
-    glued_substeps
-    hertz_cylinder
-    hertz_impact
-    hertz_spheres
-    interface_problems
-    invariance
-    ironing
-    iterative_solver
-    knocking_oscillators
-    long_run
-    mass_on_stop
-    modal_damping
-    modes
-    oblique_bar
-    one_point_shells
-    orbiting_mass
-    order
-    order_features
-    plastic_wave
-    plates
-    pounding
-    quadrature
-    random_field
-    reduced_bodies
-    rejections
-    rejections_features
-    restitution
-    resume
-    resume_features
-    rigid_cube
-    rigid_hammer
-    rigid_sphere
-    rigid_top
-    ring_sector
-    rings
-    rod_in_grid
-    rubbing_stops
-    sdnl111
-    sdnl111_bars
-    self_contact
-    shell_mortar
-    shell_sections
-    shell_edges
-    shell_self_contact
-    shapes
-    shell_benchmarks
-    shell_solid_impact
-    shell_solid_large
-    shell_solid_patch
-    shell_solid_waves
-    shock_front
-    sliding_block
-    sliding_work
-    spinning_bar
-    spinning_ring
-    static_links
-    stick_slip
-    supports
-    synthetic_record
-    taylor_bar
-    taylor_bar_steel
-    threads
-    threads_features
-    tied_surfaces
-    tori
-    viability
-    zones_glued_at_contact
-    zones_in_contact
+cases!(registry);
+
+/// What the tests of this crate see besides. They are a program of their own: a test in this library would have all checks compiled a second time.
+#[doc(hidden)]
+pub mod inside {
+    use carom_dynamics::Model;
+
+    pub use crate::check::verify;
+    pub use crate::page::{head, part};
+    pub use crate::side_by_side::{LONGEST, longest_first, side_by_side};
+    pub use crate::witness::{look, looks, system};
+    pub use crate::words::words;
+    pub use crate::{of_module, sources};
+
+    /// Two bars of so many elements each.
+    ///
+    /// # Errors
+    /// None: the bars are sound.
+    pub fn slow_bars(elements: usize) -> Result<Model, crate::Error> {
+        crate::bars::Run::slow(elements).model()
+    }
 }
 
 /// Runs all cases, or those whose name contains `filter`, and writes one line per row; returns what each found too, and where somebody
 /// `looks` what it has shown.
 ///
 /// # Errors
-/// Only of `out`; a case that cannot be computed is written and counted as failed.
+/// Of `out`, and if no threads can be started; a case that cannot be computed is written and counted as failed.
 pub fn verify(
     filter: Option<&str>,
     (size, looks): (Size, bool),
@@ -350,28 +381,4 @@ pub fn page(made: &[Made], verdict: &Verdict, draw: impl Fn(&Shown) -> Vec<Strin
         source.map_or(String::new(), |(_, source)| page::head(source))
     };
     page::page(made, verdict, head, draw)
-}
-
-#[test]
-fn names_differ_and_facts_are_stated() {
-    let mut names: Vec<_> = checks().iter().map(|check| check.name).collect();
-    let count = names.len();
-    names.sort_unstable();
-    names.dedup();
-    assert_eq!(names.len(), count);
-    assert!(checks().iter().all(|check| !check.fact.is_empty()));
-    // each file states its problem
-    let states = |(_, source): &(&str, &str)| page::head(source).len() > 60;
-    assert!(sources().iter().all(states));
-}
-
-#[cfg(test)]
-fn assert_quick(check: &Check) {
-    let rows = (check.run)(Size::Quick).unwrap();
-    assert!(!rows.is_empty(), "nothing was checked");
-    for row in &rows {
-        println!("{row}");
-    }
-    let failed = rows.iter().filter(|row| !row.holds()).count();
-    assert_eq!(failed, 0, "{}: {}", check.name, check.fact);
 }

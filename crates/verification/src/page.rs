@@ -138,7 +138,7 @@ fn numbers(row: &Row) -> [String; 3] {
 }
 
 /// Part of the tolerance, or of an upper bound, that the row takes; `None` where there is no such part.
-pub(crate) fn part(row: &Row) -> Option<f64> {
+pub fn part(row: &Row) -> Option<f64> {
     let part = match row.expected {
         Expected::Near {
             reference,
@@ -151,7 +151,7 @@ pub(crate) fn part(row: &Row) -> Option<f64> {
 }
 
 /// The comment at the head of a source file, without its marks and the brackets of its links; paragraphs apart by an empty line.
-pub(crate) fn head(source: &str) -> String {
+pub fn head(source: &str) -> String {
     let lines = source.lines().map_while(|line| line.strip_prefix("//!"));
     let lines: Vec<&str> = lines.map(str::trim).collect();
     lines.join("\n").replace("[`", "`").replace("`]", "`")
@@ -161,24 +161,4 @@ fn escaped(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_head_of_a_file_is_its_first_comment() {
-        let source = "//! Two bars.\n//!\n//! Problem: [`Run`].\n\nuse x;\n//! later\n";
-        assert_eq!(head(source), "Two bars.\n\nProblem: `Run`.");
-    }
-
-    #[test]
-    fn a_row_takes_a_part_of_its_tolerance() {
-        assert_eq!(part(&Row::near("x", 1.5, 1.0, 2.0)), Some(0.25));
-        assert_eq!(part(&Row::at_most("x", 1.0, 4.0)), Some(0.25));
-        assert_eq!(part(&Row::at_most("x", -1.0, 4.0)), Some(0.0));
-        assert_eq!(part(&Row::count("x", 3, 3)), None);
-        assert_eq!(part(&Row::at_least("x", 3.0, 1.0)), None);
-    }
 }

@@ -48,17 +48,22 @@ fn with<T>(act: impl FnOnce(&mut Option<Shown>) -> T) -> T {
 }
 
 /// Runs something, and returns what it has shown too.
-pub(crate) fn look<T>(act: impl FnOnce() -> T) -> (T, Shown) {
+pub fn look<T>(act: impl FnOnce() -> T) -> (T, Shown) {
     with(|shown| *shown = Some(Shown::default()));
     let result = act();
     (result, with(Option::take).unwrap_or_default())
+}
+
+/// Whether somebody looks.
+pub fn looks() -> bool {
+    with(|shown| shown.is_some())
 }
 
 /// [`System::new`], of a model that is shown.
 ///
 /// # Errors
 /// Those of [`System::new`].
-pub(crate) fn system(model: Model) -> Result<Arc<System>, carom_system::Error> {
+pub fn system(model: Model) -> Result<Arc<System>, carom_system::Error> {
     show(&model);
     System::new(model)
 }
@@ -104,23 +109,4 @@ pub(crate) fn compare(make: impl FnOnce() -> Compared) {
             shown.curves.push(make());
         }
     });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::bars::Run;
-
-    #[test]
-    fn a_look_sees_the_largest_model_and_nothing_is_kept_after_it() {
-        let build = |elements: usize| {
-            let model = Run::slow(elements).model().unwrap();
-            system(model).unwrap();
-        };
-        let ((), shown) = look(|| [4, 8, 2].into_iter().for_each(build));
-        let cells = |model: Model| model.bodies[0].spec.cells.len();
-        assert_eq!(shown.model.map(cells), Some(8));
-        build(4);
-        assert!(with(|shown| shown.is_none()));
-    }
 }

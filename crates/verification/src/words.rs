@@ -2,7 +2,7 @@
 
 /// `NonsmoothAlpha(NonsmoothAlpha { rho_inf: 1.0 }), Half` becomes `nonsmooth-alpha, rho_inf = 1.0, Half`: names of several words as in
 /// the case file, parameters behind commas.
-pub(crate) fn words(text: &str) -> String {
+pub fn words(text: &str) -> String {
     let mut out = String::new();
     let mut rest = text;
     while let Some(begin) = rest.find(|c: char| c.is_ascii_uppercase()) {
@@ -55,34 +55,4 @@ fn hyphened(name: &str) -> String {
         out.push(letter.to_ascii_lowercase());
     }
     out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::words;
-
-    #[test]
-    fn text_of_programs_becomes_that_of_case_files_and_other_text_stays() {
-        for (text, expected) in [
-            (
-                "NonsmoothAlpha(NonsmoothAlpha { rho_inf: 1.0 }): forces / F0",
-                "nonsmooth-alpha, rho_inf = 1.0: forces / F0",
-            ),
-            (
-                "Newmark(Newmark { beta: 0.25, gamma: 0.5 }), displacement",
-                "newmark, beta = 0.25, gamma = 0.5, displacement",
-            ),
-            ("CentralDifference(CentralDifference)", "central-difference"),
-            (
-                "theta in theta, GravouilCombescure, 4",
-                "theta in theta, gravouil-combescure, 4",
-            ),
-            (
-                "largest force of Hertz, MPa, CFL 0.5 (NaN)",
-                "largest force of Hertz, MPa, CFL 0.5 (NaN)",
-            ),
-        ] {
-            assert_eq!(words(text), expected);
-        }
-    }
 }

@@ -42,7 +42,7 @@ pub struct Iterative {
     /// Place of the node of each block, m; empty in one process.
     nodes: Vec<[f64; 3]>,
     /// What solves without contacts in place of the iterations here, of ranks that have it.
-    engine: Option<Engine>,
+    engine: Option<Box<dyn Engine>>,
 }
 
 impl Iterative {

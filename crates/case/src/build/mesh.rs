@@ -137,7 +137,7 @@ impl Builder<'_> {
     /// `key`: where the case names the file.
     fn read(&mut self, key: &str, folder: &Path, file: &str, scale: f64) -> Option<Mesh> {
         let path = folder.join(file);
-        match read::read(&path) {
+        match carom_med::read(&path) {
             Ok(mut mesh) => {
                 mesh.scale(scale);
                 Some(mesh)

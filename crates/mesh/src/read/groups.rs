@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::{ElementId, Group, Mesh};
 
 /// Adds a group of elements; one of several dimensions has the name for the highest, `name.2d` and the like for others.
-pub(super) fn add(mesh: &mut Mesh, name: &str, elements: Vec<ElementId>) {
+pub fn add(mesh: &mut Mesh, name: &str, elements: Vec<ElementId>) {
     let mut by_dim: BTreeMap<usize, Vec<ElementId>> = BTreeMap::new();
     for element in elements {
         let dim = mesh.kind(element).table().dim;

@@ -6,12 +6,10 @@
 
 mod error;
 pub mod file;
-pub(crate) mod flatten;
+pub mod flatten;
 pub mod gmsh;
-mod groups;
+pub mod groups;
 pub mod inp;
-#[cfg(feature = "hdf5")]
-pub mod med;
 pub mod stl;
 pub mod vtu;
 
@@ -23,27 +21,29 @@ pub use error::{Place, ReadError};
 /// Extensions of the files that [`read`] takes.
 pub const EXTENSIONS: &[&str] = &["msh", "inp", "stl", "vtu", "med"];
 
-#[cfg(feature = "hdf5")]
-fn med(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
-    med::parse(path, bytes)
-}
-
-#[cfg(not(feature = "hdf5"))]
-fn med(path: &Path, _: Vec<u8>) -> Result<Mesh, ReadError> {
-    Err(ReadError::Feature {
-        path: path.to_owned(),
-    })
-}
-
 /// Most bytes of a mesh file: 16 GiB, some hundred million nodes.
 const LARGEST: u64 = 16 << 30;
 
 /// Reads the mesh in a file; the extension, in any case, says the format: `.msh` is Gmsh's ([`gmsh`]), `.inp` that of
 /// Abaqus and CalculiX ([`inp`]), `.stl` a surface of triangles ([`stl`]), `.vtu` an unstructured grid of VTK ([`vtu`]), `.med` a mesh of
-/// Salome and code_aster (`med`, with the feature `hdf5`).
+/// Salome and code_aster, which this crate alone refuses (the crate `med` reads it).
 ///
 /// Fails if the file cannot be read or its content refused; see [`ReadError`].
 pub fn read(path: &Path) -> Result<Mesh, ReadError> {
+    read_with(path, |path, _| {
+        Err(ReadError::Feature {
+            path: path.to_owned(),
+        })
+    })
+}
+
+/// The same, with a reader of the bytes of MED files.
+///
+/// Fails if the file cannot be read or its content refused; see [`ReadError`].
+pub fn read_with(
+    path: &Path,
+    med: fn(&Path, Vec<u8>) -> Result<Mesh, ReadError>,
+) -> Result<Mesh, ReadError> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     let format = extension.to_lowercase();
     if !EXTENSIONS.contains(&format.as_str()) {

@@ -10,9 +10,8 @@ use std::ptr::null_mut;
 
 use mpi::ffi::MPI_Comm;
 
-use crate::engine::Graph;
-use crate::link::Ranks;
 use crate::petsc::{Code, Handle, MatDestroy, PETSC_COMM_WORLD, told};
+use carom_ranks::{Graph, Ranks};
 
 unsafe extern "C" {
     fn PetscMallocA(
@@ -46,27 +45,22 @@ unsafe extern "C" {
     fn ISDestroy(set: *mut Handle) -> Code;
 }
 
-impl Ranks {
-    /// The part of each element by PT-Scotch, or by what `-mat_partitioning_type` of `PETSC_OPTIONS` says, in which elements of
-    /// different parts share few faces; none without an engine. All ranks ask together.
-    ///
-    /// # Errors
-    /// What PETSc says.
-    pub fn parts_of_graph(&self, graph: &Graph) -> Result<Option<Vec<u32>>, String> {
-        if !self.has_engine() {
-            return Ok(None);
-        }
-        let mut of = Partitioning::default();
-        let own = of.apply(graph)?;
-        let all = graph.starts.last().copied().unwrap_or(0);
-        let mut parts = vec![0.0; all];
-        let begin = graph.starts[self.rank()];
-        for (part, own) in parts[begin..].iter_mut().zip(own) {
-            *part = f64::from(own);
-        }
-        self.gather(&mut parts, &graph.starts);
-        Ok(Some(parts.into_iter().map(|part| part as u32).collect()))
+/// The part of each element by PT-Scotch, or by what `-mat_partitioning_type` of `PETSC_OPTIONS` says, in which elements of
+/// different parts share few faces. All ranks ask together.
+///
+/// # Errors
+/// What PETSc says.
+pub fn parts(ranks: &Ranks, graph: &Graph) -> Result<Vec<u32>, String> {
+    let mut of = Partitioning::default();
+    let own = of.apply(graph)?;
+    let all = graph.starts.last().copied().unwrap_or(0);
+    let mut parts = vec![0.0; all];
+    let begin = graph.starts[ranks.rank()];
+    for (part, own) in parts[begin..].iter_mut().zip(own) {
+        *part = f64::from(own);
     }
+    ranks.gather(&mut parts, &graph.starts);
+    Ok(parts.into_iter().map(|part| part as u32).collect())
 }
 
 /// What PETSc has made for a partition.

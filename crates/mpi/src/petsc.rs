@@ -13,8 +13,7 @@ use std::ptr::null_mut;
 
 use mpi::ffi::MPI_Comm;
 
-use crate::engine::{OwnRows, Unsolved};
-use crate::link::Ranks;
+use carom_ranks::{Engine, OwnRows, Ranks, Unsolved};
 
 pub(crate) type Handle = *mut c_void;
 pub(crate) type Code = c_int;
@@ -125,7 +124,7 @@ pub(crate) fn told(code: Code) -> Result<(), String> {
 }
 
 /// A symmetric positive definite matrix whose rows ranks share, with its solver.
-pub struct Engine {
+pub struct Solver {
     ranks: Ranks,
     starts: Vec<usize>,
     matrix: Handle,
@@ -135,17 +134,17 @@ pub struct Engine {
 }
 
 // SAFETY: a run moves to another thread as a whole; the thread that steps is the one that calls PETSc.
-unsafe impl Send for Engine {}
+unsafe impl Send for Solver {}
 // SAFETY: nothing calls PETSc through a shared reference.
-unsafe impl Sync for Engine {}
+unsafe impl Sync for Solver {}
 
-impl Engine {
+impl Solver {
     /// The solver of a matrix of which each rank gives its rows.
     ///
     /// # Errors
     /// What PETSc says.
-    fn new(ranks: &Ranks, rows: &OwnRows) -> Result<Engine, String> {
-        let mut engine = Engine {
+    pub fn new(ranks: &Ranks, rows: &OwnRows) -> Result<Solver, String> {
+        let mut engine = Solver {
             ranks: ranks.clone(),
             starts: rows.starts.to_vec(),
             matrix: null_mut(),
@@ -215,25 +214,6 @@ impl Engine {
         }
     }
 
-    /// x of A x = b, whole on all ranks, and the iterations taken. They end where the residual falls below `tolerance` times that of x = 0, in
-    /// the norm of the preconditioner.
-    ///
-    /// # Errors
-    /// Iterations that do not end, with what PETSc says.
-    pub fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> Result<usize, Unsolved> {
-        let mut ended = Unsolved {
-            iterations: 0,
-            residual: f64::NAN,
-            cause: String::new(),
-        };
-        let taken = self.solve_own(b, x, (tolerance, &mut ended));
-        self.ranks.gather(x, &self.starts);
-        match taken {
-            Ok(()) => Ok(ended.iterations),
-            Err(cause) => Err(Unsolved { cause, ..ended }),
-        }
-    }
-
     fn solve_own(
         &mut self,
         b: &[f64],
@@ -268,19 +248,23 @@ impl Engine {
     }
 }
 
-impl Ranks {
-    /// The engine's solver of a matrix of which each rank gives its rows; none without an engine.
-    ///
-    /// # Errors
-    /// What the engine says.
-    pub fn engine(&self, rows: &OwnRows) -> Result<Option<Engine>, String> {
-        self.has_engine()
-            .then(|| Engine::new(self, rows))
-            .transpose()
+impl Engine for Solver {
+    fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> Result<usize, Unsolved> {
+        let mut ended = Unsolved {
+            iterations: 0,
+            residual: f64::NAN,
+            cause: String::new(),
+        };
+        let taken = self.solve_own(b, x, (tolerance, &mut ended));
+        self.ranks.gather(x, &self.starts);
+        match taken {
+            Ok(()) => Ok(ended.iterations),
+            Err(cause) => Err(Unsolved { cause, ..ended }),
+        }
     }
 }
 
-impl Drop for Engine {
+impl Drop for Solver {
     fn drop(&mut self) {
         // SAFETY: each is PETSc's own or null.
         unsafe {

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+#[cfg(feature = "petsc")]
+use carom_ranks::{Engine, Graph, OwnRows};
 use mpi::Threading;
 use mpi::collective::SystemOperation;
 use mpi::datatype::PartitionMut;
@@ -10,7 +12,7 @@ use mpi::request::multiple_scope;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, CommunicatorCollectives, Destination, Root, Source};
 
-use crate::link::{Link, Message, Ranks};
+use carom_ranks::{Link, Message, Ranks};
 
 /// MPI from its beginning to its end.
 pub struct Session {
@@ -101,8 +103,20 @@ impl Link for World {
         first.broadcast_into(&mut values[..]);
     }
 
+    #[cfg(feature = "petsc")]
     fn has_engine(&self) -> bool {
-        cfg!(feature = "petsc")
+        true
+    }
+
+    #[cfg(feature = "petsc")]
+    fn engine(&self, ranks: &Ranks, rows: &OwnRows) -> Result<Option<Box<dyn Engine>>, String> {
+        let solver = crate::petsc::Solver::new(ranks, rows)?;
+        Ok(Some(Box::new(solver)))
+    }
+
+    #[cfg(feature = "petsc")]
+    fn parts_of_graph(&self, ranks: &Ranks, graph: &Graph) -> Result<Option<Vec<u32>>, String> {
+        crate::scotch::parts(ranks, graph).map(Some)
     }
 
     fn gather(&self, values: &mut [f64], starts: &[usize]) {

@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use carom_mesh::{Mesh, read};
+use carom_med::{med, read};
+use carom_mesh::Mesh;
 
 use carom_testing::damage::damaged;
 
 use crate::damage::is_consistent;
 
 fn path(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures");
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../mesh/tests/fixtures");
     folder.join(name)
 }
 
@@ -30,8 +31,8 @@ fn places(mesh: &Mesh, name: &str) -> Vec<Vec<[i64; 3]>> {
 #[test]
 fn cells_and_groups_are_those_of_the_files_of_gmsh() {
     for name in ["mixed", "second", "incomplete"] {
-        let theirs = read::read(&path(&format!("{name}-41-bin.msh"))).unwrap();
-        let ours = read::read(&path(&format!("{name}.med"))).unwrap();
+        let theirs = read(&path(&format!("{name}-41-bin.msh"))).unwrap();
+        let ours = read(&path(&format!("{name}.med"))).unwrap();
         assert_eq!(ours.dim, theirs.dim, "{name}");
         let names = |mesh: &Mesh| mesh.groups.keys().cloned().collect::<Vec<_>>();
         assert_eq!(names(&ours), names(&theirs));
@@ -49,7 +50,7 @@ fn cells_and_groups_are_those_of_the_files_of_gmsh() {
 #[test]
 fn what_is_no_med_file_is_told() {
     let parse = |bytes: Vec<u8>| {
-        read::med::parse(Path::new("a.med"), bytes)
+        med::parse(Path::new("a.med"), bytes)
             .unwrap_err()
             .to_string()
     };
@@ -65,7 +66,7 @@ fn damaged_files_give_an_error_or_a_consistent_mesh() {
     let mut state = 0x9e37_79b9_7f4a_7c15;
     let begin = Instant::now();
     let whole = std::fs::read(path("mixed.med")).unwrap();
-    let parse = |content: Vec<u8>| read::med::parse(Path::new("a.med"), content);
+    let parse = |content: Vec<u8>| med::parse(Path::new("a.med"), content);
     for length in (0..whole.len()).step_by(17) {
         if let Ok(mesh) = parse(whole[..length].to_vec()) {
             assert!(is_consistent(&mesh), "cut at {length}");

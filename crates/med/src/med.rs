@@ -5,7 +5,7 @@
 //! nodes is one of points, with `.nodes` behind its name where a group of cells has the name. Without any group `cells` has the cells of
 //! the highest dimension.
 //!
-//! **Nodes.** All are kept, in file order. The dimension is found as for [Gmsh's files](super::gmsh).
+//! **Nodes.** All are kept, in file order. The dimension is found as for [Gmsh's files](carom_mesh::read::gmsh).
 //!
 //! MED turns cells of three dimensions inside out, as seen by most others: its tetrahedron (0 1 2 3) has the node 3 on the other side.
 //!
@@ -15,12 +15,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use carom_elements::Kind;
+use carom_mesh::read::flatten::flatten;
+use carom_mesh::read::groups::add;
+use carom_mesh::read::{Place, ReadError};
+use carom_mesh::{Block, ElementId, Group, Mesh};
 use hdf5_pure::{AttrValue, Dataset, File, Group as Folder};
-
-use super::flatten::flatten;
-use super::groups::add;
-use super::{Place, ReadError};
-use crate::{Block, ElementId, Group, Mesh};
 
 /// The group of all cells of a file without groups.
 const CELLS: &str = "cells";
