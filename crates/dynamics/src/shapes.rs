@@ -14,6 +14,8 @@ pub struct Shapes {
     pub(crate) bodies: Vec<Option<Shape>>,
     /// What a compression of rate 1/s adds at most to 2 over the critical step, by bulk viscosity.
     pub(crate) by_compression: f64,
+    /// How often frequencies were found anew.
+    pub renewals: u64,
     /// Bound of the change of any length in an element since its frequency was found, relative.
     pub(crate) changed: f64,
 }

@@ -50,24 +50,21 @@ impl Driver {
                 return Ok(());
             }
         }
-        let found = self.look_at_bodies()?;
+        // in the memory of the last look
+        let mut bodies = std::mem::take(&mut self.state.shapes.bodies);
+        bodies.clear();
         let mut all = Seen::default();
-        for (seen, _) in &found {
+        self.look_at_bodies(|body, seen, velocity| {
             all = all.with(seen);
-        }
-        let bodies = system.bodies.iter().zip(&found);
-        let shape = |(body, (seen, velocity)): (&Body, &(Seen, [f64; 3]))| {
             let shortest = seen.shortest;
-            changes(body).then_some(Shape {
-                velocity: *velocity,
-                shortest,
-            })
-        };
+            bodies.push(changes(body).then_some(Shape { velocity, shortest }));
+        })?;
         let shapes = &mut self.state.shapes;
-        shapes.bodies = bodies.map(shape).collect();
+        shapes.bodies = bodies;
         if all.is_renewed {
             self.state.control.stable = PART * system.critical_with(all.bound.frequency);
             shapes.by_compression = all.bound.by_compression;
+            shapes.renewals += 1;
         }
         shapes.changed = all.changed;
         Ok(())
@@ -95,26 +92,32 @@ impl Driver {
         }
     }
 
-    /// What a look at each body tells, and its mean velocity, m/s.
+    /// Looks at each body, and tells `take` what is seen of it and its mean velocity, m/s.
     ///
     /// # Errors
     /// An element without tangent.
-    fn look_at_bodies(&mut self) -> Result<Vec<(Seen, [f64; 3])>, Error> {
+    fn look_at_bodies(
+        &mut self,
+        mut take: impl FnMut(&Body, &Seen, [f64; 3]),
+    ) -> Result<(), Error> {
         let (system, motion) = (&*self.system, &self.state.motion);
         if let Some(shared) = &mut self.shared {
-            return shared.look(system, motion, WORTH * CHANGE);
+            let found = shared.look(system, motion, WORTH * CHANGE)?;
+            for (body, (seen, velocity)) in system.bodies.iter().zip(&found) {
+                take(body, seen, *velocity);
+            }
+            return Ok(());
         }
         let looks = &mut self.state.shapes.looks;
         looks.resize_with(system.bodies.len(), Looks::default);
-        let look = |(k, looks): (usize, &mut Looks)| {
-            let velocity = system.mean_velocity(k, &motion.v);
-            if !system.is_bound_by(k) {
-                return Ok((Seen::default(), velocity));
+        for (k, (body, looks)) in system.bodies.iter().zip(looks).enumerate() {
+            let mut seen = Seen::default();
+            if system.is_bound_by(k) {
+                seen = body.look(&system.placement(k, motion), looks, WORTH * CHANGE)?;
             }
-            let at = system.placement(k, motion);
-            Ok((system.bodies[k].look(&at, looks, WORTH * CHANGE)?, velocity))
-        };
-        looks.iter_mut().enumerate().map(look).collect()
+            take(body, &seen, system.mean_velocity(k, &motion.v));
+        }
+        Ok(())
     }
 
     /// How many times a step of `dt` (s) is halved for its parts to be below the critical step.

@@ -359,16 +359,17 @@ fn such_steps_allocate_nothing() {
             driver.restart(&vec![0.0; unknowns], &velocity).unwrap();
             let (mut touched, mut looks) = (false, 0);
             for step in 0..STEPS {
-                let (before, stable) = (allocations(), driver.state().control.stable);
+                let (before, renewals) = (allocations(), driver.state().shapes.renewals);
                 driver.step().unwrap();
-                let looked = driver.state().control.stable != stable;
+                let looked = driver.state().shapes.renewals != renewals;
                 let taken = allocations() - before;
                 assert!(taken == 0 || looked || step < 2, "{}: {step}", case.name);
                 touched |= driver.report().contacts.iter().any(|c| c.closed > 0);
                 looks += usize::from(looked);
             }
             assert_eq!(touched, case.friction.is_some(), "{}", case.name);
-            assert!(looks < STEPS / 10, "{}: {looks}", case.name);
+            // a sum goes on from a twentieth at most and up to a tenth: one look in five steps at these speeds
+            assert!(looks < STEPS / 5, "{}: {looks}", case.name);
         }
     });
 }
