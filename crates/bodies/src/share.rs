@@ -208,11 +208,8 @@ impl Share {
         let stored = self
             .solid
             .force(&own, &mut self.new, &mut self.scratch, f)?;
-        let mut first = 0;
-        for range in &self.histories {
-            let own = first..first + range.len();
-            new[range.clone()].copy_from_slice(&self.new[own.clone()]);
-            first = own.end;
+        for (range, own) in parts(&self.histories) {
+            new[range].copy_from_slice(&self.new[own]);
         }
         Ok(stored)
     }
@@ -235,13 +232,20 @@ impl Share {
 
     /// Takes the histories of these elements out of that of the whole body.
     fn take_histories(&mut self, whole: &[f64]) {
-        let mut first = 0;
-        for range in &self.histories {
-            let own = first..first + range.len();
-            self.old[own.clone()].copy_from_slice(&whole[range.clone()]);
-            first = own.end;
+        for (range, own) in parts(&self.histories) {
+            self.old[own].copy_from_slice(&whole[range]);
         }
     }
+}
+
+/// Parts of the history of a whole body, each with its place in that of some elements.
+fn parts(histories: &[Range<usize>]) -> impl Iterator<Item = (Range<usize>, Range<usize>)> + '_ {
+    let mut first = 0;
+    histories.iter().map(move |range| {
+        let own = first..first + range.len();
+        first = own.end;
+        (range.clone(), own)
+    })
 }
 
 impl Solid {

@@ -68,16 +68,16 @@ pub(crate) fn go_through(
     let now = Instant::now();
     let system = Arc::clone(&built.system);
     let observer = match ranks.is_first() {
-        true => results(settings).map(|results| Either::Results(Box::new(results))),
+        true => results(settings).map(|results| Written::Results(Box::new(results))),
         false => match checkpoint {
             Some(checkpoint) => Pieces::resume(&settings, system, checkpoint),
             None => Ok(Pieces::create(&settings, system)),
         }
-        .map(|pieces| Either::Pieces(pieces.map(Box::new))),
+        .map(|pieces| Written::Pieces(pieces.map(Box::new))),
     };
     let mut results = match together(ranks, observer, Failed::Output)? {
-        Either::Results(results) => results,
-        Either::Pieces(mut pieces) => {
+        Written::Results(results) => results,
+        Written::Pieces(mut pieces) => {
             let pieces = pieces
                 .as_deref_mut()
                 .map(|pieces| pieces as &mut dyn Observer);
@@ -106,7 +106,7 @@ pub(crate) fn go_through(
 }
 
 /// What a rank writes.
-enum Either {
+enum Written {
     Results(Box<Results>),
     Pieces(Option<Box<Pieces>>),
 }

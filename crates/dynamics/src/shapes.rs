@@ -14,13 +14,16 @@ pub struct Shapes {
     pub(crate) bodies: Vec<Option<Shape>>,
     /// What a compression of rate 1/s adds at most to 2 over the critical step, by bulk viscosity.
     pub(crate) by_compression: f64,
-    /// How often frequencies were found anew.
-    pub renewals: u64,
     /// Bound of the change of any length in an element since its frequency was found, relative.
     pub(crate) changed: f64,
 }
 
 impl Shapes {
+    /// Whether no frequency was found anew from one to the other.
+    pub fn have_frequencies_of(&self, other: &Shapes) -> bool {
+        self.looks == other.looks
+    }
+
     /// Whether they are of this system, or of none before the first look.
     pub(crate) fn are_of(&self, system: &System) -> bool {
         let fits = |count: usize| [0, system.bodies.len()].contains(&count);

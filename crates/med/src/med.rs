@@ -66,21 +66,8 @@ type Fault = (&'static str, String, &'static str, bool);
 /// The first thing that is malformed or of a sort that is not read, with the object of the file that it is in.
 pub fn parse(path: &Path, content: Vec<u8>) -> Result<Mesh, ReadError> {
     read(content).map_err(|(object, found, expected, unsupported)| {
-        let (path, place) = (path.to_owned(), Place::Object(object));
-        match unsupported {
-            true => ReadError::Unsupported {
-                path,
-                place,
-                found,
-                accepted: expected.to_owned(),
-            },
-            false => ReadError::Malformed {
-                path,
-                place,
-                found,
-                expected: expected.to_owned(),
-            },
-        }
+        let told = (found, expected.to_owned());
+        ReadError::of_content(path, Place::Object(object), told, unsupported)
     })
 }
 

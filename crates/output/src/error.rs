@@ -208,4 +208,9 @@ impl Error {
             source,
         }
     }
+
+    /// As the error of an observer of a run: for `map_err`.
+    pub(crate) fn of_observer(self) -> carom_dynamics::Error {
+        carom_dynamics::Error::Observer(Box::new(self))
+    }
 }

@@ -2,11 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use carom_case::{Resume, run};
 use carom_mesh::read::vtu::{Numbers, Stored, stored};
 
-use crate::compare::Nobody;
-use crate::ranks::{METAL, block, built, on_all, run_on};
+use crate::ranks::{METAL, block, resume_on, run_alone, run_on};
 
 /// The attributes of this name in a text.
 fn named<'a>(text: &'a str, name: &str) -> Vec<&'a str> {
@@ -113,11 +111,7 @@ fn text() -> String {
 fn the_pieces_of_ranks_are_the_fields_of_one_process() {
     let folder = tempfile::tempdir().unwrap();
     let alone = folder.path().join("alone");
-    let (input, case, model) = built(&text());
-    run((&input, &case, &model), alone.clone(), &mut Nobody, &|| {
-        false
-    })
-    .unwrap();
+    run_alone(&text(), &alone);
     let several = folder.path().join("several");
     for end in run_on(3, &text(), &several, u64::MAX) {
         end.unwrap();
@@ -143,26 +137,13 @@ fn the_pieces_of_ranks_are_the_fields_of_one_process() {
 fn fields_go_on_in_other_pieces_from_a_checkpoint() {
     let folder = tempfile::tempdir().unwrap();
     let alone = folder.path().join("alone");
-    let (input, case, model) = built(&text());
-    run((&input, &case, &model), alone.clone(), &mut Nobody, &|| {
-        false
-    })
-    .unwrap();
+    run_alone(&text(), &alone);
     let cut = folder.path().join("cut");
     for end in run_on(3, &text(), &cut, 25) {
         end.unwrap();
     }
     let before = files(&cut).len();
-    on_all(2, |ranks| {
-        let opened = match ranks.is_first() {
-            true => Resume::open(&cut, &[]),
-            false => Resume::open_beside(&cut, &[]),
-        };
-        let Ok(resume) = opened else {
-            panic!("the folder is refused")
-        };
-        resume.run_on_ranks(ranks, &mut Nobody, &|| false).unwrap();
-    });
+    resume_on(2, &cut);
     // the end of the first part is an instant more than in one run, and is taken back
     let (whole, pieces) = (files(&alone), files(&cut));
     assert_eq!(whole.len(), pieces.len());

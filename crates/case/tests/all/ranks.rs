@@ -115,7 +115,7 @@ pub fn block(material: &str) -> String {
     BLOCK.replace("MATERIAL", material)
 }
 
-pub fn built(text: &str) -> (Input, carom_case::schema::Case, Built) {
+fn built(text: &str) -> (Input, carom_case::schema::Case, Built) {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap_or_else(|problems| panic!("{problems:?}"));
     let built = build(&case, &locator, &input).unwrap_or_else(|problems| panic!("{problems:?}"));
@@ -128,7 +128,7 @@ fn after(steps: u64) -> impl Fn() -> bool {
     move || left.replace(left.get().saturating_sub(1)) == 0
 }
 
-pub fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
+fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T> {
     std::thread::scope(|scope| {
         let ranks = threads(count).into_iter();
         let work = &work;
@@ -149,6 +149,27 @@ pub fn run_on(
         let parts = (&input, &case, &built);
         run_on_ranks(ranks, parts, folder.to_owned(), &mut Nobody, &after(steps))
     })
+}
+
+/// Goes on with the run of a folder on so many ranks.
+pub fn resume_on(count: usize, folder: &Path) {
+    on_all(count, |ranks| {
+        let opened = match ranks.is_first() {
+            true => Resume::open(folder, &[]),
+            false => Resume::open_beside(folder, &[]),
+        };
+        let Ok(resume) = opened else {
+            panic!("the folder is refused")
+        };
+        resume.run_on_ranks(ranks, &mut Nobody, &|| false).unwrap();
+    });
+}
+
+/// Runs a case in one process.
+pub fn run_alone(text: &str, folder: &Path) {
+    let (input, case, model) = built(text);
+    let parts = (&input, &case, &model);
+    run(parts, folder.to_owned(), &mut Nobody, &|| false).unwrap();
 }
 
 /// The state of the last checkpoint.
@@ -227,11 +248,7 @@ fn rows(folder: &Path) -> Vec<Vec<f64>> {
 fn compare_on_ranks(name: &str, text: &str, counts: &[usize]) {
     let folder = tempfile::tempdir().unwrap();
     let alone = folder.path().join("alone");
-    let (input, case, model) = built(text);
-    run((&input, &case, &model), alone.clone(), &mut Nobody, &|| {
-        false
-    })
-    .unwrap();
+    run_alone(text, &alone);
     let state = last(text, &alone);
     let histories = rows(&alone);
     for &count in counts {
@@ -314,11 +331,7 @@ fn three_ranks_and_one_go_on_from_the_checkpoint_of_four() {
     let text = block(METAL);
     let folder = tempfile::tempdir().unwrap();
     let alone = folder.path().join("alone");
-    let (input, case, model) = built(&text);
-    run((&input, &case, &model), alone.clone(), &mut Nobody, &|| {
-        false
-    })
-    .unwrap();
+    run_alone(&text, &alone);
     for count in [3, 1] {
         let cut = folder.path().join(format!("cut-{count}"));
         let ended = run_on(4, &text, &cut, 25);
@@ -332,16 +345,7 @@ fn three_ranks_and_one_go_on_from_the_checkpoint_of_four() {
             };
             resume.run(&mut Nobody, &|| false).unwrap();
         } else {
-            on_all(count, |ranks| {
-                let opened = match ranks.is_first() {
-                    true => Resume::open(&cut, &[]),
-                    false => Resume::open_beside(&cut, &[]),
-                };
-                let Ok(resume) = opened else {
-                    panic!("the folder is refused")
-                };
-                resume.run_on_ranks(ranks, &mut Nobody, &|| false).unwrap();
-            });
+            resume_on(count, &cut);
         }
         assert_same("resumed", &last(&text, &alone), &last(&text, &cut));
     }

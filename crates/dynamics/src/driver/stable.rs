@@ -19,8 +19,9 @@ const PART: f64 = 0.9;
 /// Largest change of the lengths in an element, relative, between looks at its frequencies.
 const CHANGE: f64 = 0.1;
 
-/// Part of this change from which on frequencies are found anew where lengths are compared.
-const WORTH: f64 = 0.5;
+/// Part of this change from which on frequencies are found anew where lengths are compared: the less, the more frequencies; the more, the older they
+/// are, and the sooner lengths are compared again.
+const WORTH: f64 = 0.4;
 
 /// Steps that are fractions of the critical step have so many sizes from one to its half: equal steps know the displacement ahead.
 const RUNGS: f64 = 16.0;
@@ -64,7 +65,6 @@ impl Driver {
         if all.is_renewed {
             self.state.control.stable = PART * system.critical_with(all.bound.frequency);
             shapes.by_compression = all.bound.by_compression;
-            shapes.renewals += 1;
         }
         shapes.changed = all.changed;
         Ok(())

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Why a mesh could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +68,32 @@ pub enum Place {
     Line(usize),
     /// A byte of a binary file, from 0.
     Byte(usize),
+}
+
+impl ReadError {
+    /// That a file has something other than expected there; `unsupported`: it is sound but not read.
+    pub fn of_content(
+        path: &Path,
+        place: Place,
+        (found, expected): (String, String),
+        unsupported: bool,
+    ) -> ReadError {
+        let path = path.to_owned();
+        match unsupported {
+            true => ReadError::Unsupported {
+                path,
+                place,
+                found,
+                accepted: expected,
+            },
+            false => ReadError::Malformed {
+                path,
+                place,
+                found,
+                expected,
+            },
+        }
+    }
 }
 
 impl fmt::Display for Place {

@@ -23,6 +23,7 @@ use crate::results::{Fields, Zoning};
 use crate::vtu::{Cells, Field, Grid, Values, write};
 
 /// All bodies as one grid on the system's nodes, or the elements of one of several ranks on their own.
+#[derive(Default)]
 pub(super) struct Volume {
     /// Of a rank its elements.
     own: Option<Own>,
@@ -36,13 +37,7 @@ pub(super) struct Volume {
 
 impl Volume {
     pub(super) fn new(system: &System, zoning: Option<&Zoning>) -> Volume {
-        let mut volume = Volume {
-            own: None,
-            cells: Vec::new(),
-            body: Vec::new(),
-            zone: Vec::new(),
-            weights: [Vec::new(), Vec::new()],
-        };
+        let mut volume = Volume::default();
         if let Some(zoning) = zoning {
             for (zone, weights) in zoning.of_body.iter().zip(&zoning.weights) {
                 let zone = *zone as i32;
@@ -59,13 +54,7 @@ impl Volume {
     /// The elements of a rank.
     pub(super) fn of_piece(system: &System, piece: &Piece) -> Volume {
         let own = Own::new(system, piece);
-        let mut volume = Volume {
-            own: None,
-            cells: Vec::new(),
-            body: Vec::new(),
-            zone: Vec::new(),
-            weights: [Vec::new(), Vec::new()],
-        };
+        let mut volume = Volume::default();
         volume.add_cells(system, &mut own.bodies.iter().map(|(body, _)| body));
         for node in volume.cells.iter_mut().flat_map(|(_, nodes)| nodes) {
             // the nodes are those of these cells

@@ -332,7 +332,7 @@ impl Observer for Results {
         self.broken |= taken.is_err();
         let outcome = taken.and_then(|()| self.keep_if_due(run));
         self.totals.spent += begin.elapsed();
-        outcome.map_err(observer)
+        outcome.map_err(Error::of_observer)
     }
 
     fn looks(&self, run: &dyn Stepper) -> bool {
@@ -357,7 +357,7 @@ impl Observer for Results {
         let begin = Instant::now();
         let outcome = self.end(run);
         self.totals.spent += begin.elapsed();
-        outcome.map_err(observer)
+        outcome.map_err(Error::of_observer)
     }
 }
 
@@ -365,8 +365,4 @@ impl Observer for Results {
 fn velocities(system: &System, v: &[f64]) -> Vec<[f64; 3]> {
     let bodies = 0..system.bodies.len();
     bodies.map(|body| system.mean_velocity(body, v)).collect()
-}
-
-fn observer(cause: Error) -> carom_dynamics::Error {
-    carom_dynamics::Error::Observer(Box::new(cause))
 }

@@ -62,7 +62,7 @@ impl Observer for Pieces {
         let due = self.sent.is_due(&self.fields, self.system.dt, time);
         self.sent.see(time);
         match due {
-            true => self.write(run).map_err(observer),
+            true => self.write(run).map_err(Error::of_observer),
             false => Ok(()),
         }
     }
@@ -70,15 +70,11 @@ impl Observer for Pieces {
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         match self.sent.has(run.state().time) {
             true => Ok(()),
-            false => self.write(run).map_err(observer),
+            false => self.write(run).map_err(Error::of_observer),
         }
     }
 
     fn looks(&self, _: &dyn Stepper) -> bool {
         false
     }
-}
-
-fn observer(cause: Error) -> carom_dynamics::Error {
-    carom_dynamics::Error::Observer(Box::new(cause))
 }

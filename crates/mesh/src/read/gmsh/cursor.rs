@@ -103,21 +103,12 @@ impl<'a> Cursor<'a> {
             true => Place::Line(1 + before.iter().filter(|&&byte| byte == b'\n').count()),
             false => Place::Byte(fault.at),
         };
-        let (path, found, expected) = (path.to_owned(), fault.found, fault.expected);
-        match fault.unsupported {
-            true => ReadError::Unsupported {
-                path,
-                place,
-                found,
-                accepted: expected,
-            },
-            false => ReadError::Malformed {
-                path,
-                place,
-                found,
-                expected,
-            },
-        }
+        ReadError::of_content(
+            path,
+            place,
+            (fault.found, fault.expected),
+            fault.unsupported,
+        )
     }
 
     /// Takes numbers as text from here on; or as binary, in the byte order that the integer 1 tells, which it reads.

@@ -37,21 +37,8 @@ use fault::Fault;
 pub fn parse(path: &Path, content: &[u8]) -> Result<Mesh, ReadError> {
     let text = String::from_utf8_lossy(content);
     read(&text).map_err(|fault| {
-        let (path, place) = (path.to_owned(), Place::Line(fault.line));
-        match fault.unsupported {
-            true => ReadError::Unsupported {
-                path,
-                place,
-                found: fault.found,
-                accepted: fault.expected,
-            },
-            false => ReadError::Malformed {
-                path,
-                place,
-                found: fault.found,
-                expected: fault.expected,
-            },
-        }
+        let told = (fault.found, fault.expected);
+        ReadError::of_content(path, Place::Line(fault.line), told, fault.unsupported)
     })
 }
 

@@ -40,21 +40,8 @@ pub fn parse(path: &Path, content: &[u8]) -> Result<Mesh, ReadError> {
 }
 
 fn error(path: &Path, (line, found, expected, unsupported): Fault) -> ReadError {
-    let (path, place) = (path.to_owned(), Place::Line(line));
-    match unsupported {
-        true => ReadError::Unsupported {
-            path,
-            place,
-            found,
-            accepted: expected.to_owned(),
-        },
-        false => ReadError::Malformed {
-            path,
-            place,
-            found,
-            expected: expected.to_owned(),
-        },
-    }
+    let told = (found, expected.to_owned());
+    ReadError::of_content(path, Place::Line(line), told, unsupported)
 }
 
 fn file(content: &[u8]) -> Result<File<'_>, Fault> {
