@@ -1,6 +1,6 @@
 //! What is known of the shapes of elements since their frequencies were last looked at.
 
-use carom_bodies::Looks;
+use carom_bodies::{Body, Looks, Solid};
 use serde::{Deserialize, Serialize};
 
 use crate::system::System;
@@ -27,7 +27,12 @@ impl Shapes {
     /// Whether they are of this system, or of none before the first look.
     pub(crate) fn are_of(&self, system: &System) -> bool {
         let fits = |count: usize| [0, system.bodies.len()].contains(&count);
-        fits(self.looks.len()) && fits(self.bodies.len())
+        let of_body = |(looks, body): (&Looks, &Body)| {
+            let numbers = body.as_solid().and_then(Solid::numbers_of_look);
+            looks.are_of(body.cells().len(), numbers)
+        };
+        let mut looks = self.looks.iter().zip(&system.bodies);
+        fits(self.looks.len()) && fits(self.bodies.len()) && looks.all(of_body)
     }
 }
 

@@ -201,6 +201,12 @@ impl Looks {
         self.bounds.is_empty()
     }
 
+    /// Whether they are of a body with so many cells and [`Solid::numbers_of_look`], or of none.
+    pub fn are_of(&self, cells: usize, numbers: Option<usize>) -> bool {
+        let sizes = numbers.map_or((1, 0), |numbers| (cells, cells * (numbers - 2)));
+        self.is_empty() || (self.bounds.len(), self.places.len()) == sizes
+    }
+
     /// Appends what is known of an element to some numbers.
     pub fn push(&self, element: usize, numbers: &mut Vec<f64>) {
         let stride = self.places.len() / self.bounds.len();
