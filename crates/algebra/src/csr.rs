@@ -5,6 +5,9 @@
 
 use crate::pattern::Cliques;
 
+/// Marks in [`Csr::gathered`] the 1 on the diagonal of an unknown that is held.
+const HELD: u32 = u32::MAX;
+
 /// Square sparse matrix with both triangles and the whole diagonal stored.
 #[derive(Clone, Debug)]
 pub struct Csr {
@@ -13,9 +16,30 @@ pub struct Csr {
     row_ptr: Vec<usize>,
     col: Vec<u32>,
     val: Vec<f64>,
+    /// Whether the row has the columns of the one before it.
+    alike: Vec<bool>,
+    /// Places of the pairs of nodes that were added since the matrix was cleared, and of those before: the next time they come in the same
+    /// order, and are not searched for.
+    found: Vec<u32>,
+    /// Number of pairs since then.
+    added: usize,
 }
 
 impl Csr {
+    fn new(n: usize, row_ptr: Vec<usize>, col: Vec<u32>, val: Vec<f64>) -> Self {
+        let columns = |i: usize| &col[row_ptr[i]..row_ptr[i + 1]];
+        let alike = (0..n).map(|i| i > 0 && columns(i) == columns(i - 1));
+        Self {
+            n,
+            alike: alike.collect(),
+            row_ptr,
+            col,
+            val,
+            found: Vec::new(),
+            added: 0,
+        }
+    }
+
     /// Matrix of zeros that has an entry for every pair of unknowns of every list, and the diagonal.
     ///
     /// `n`: number of unknowns, larger than any unknown of the lists.
@@ -41,12 +65,7 @@ impl Csr {
             row_ptr.push(col.len());
         }
         let val = vec![0.0; col.len()];
-        Self {
-            n,
-            row_ptr,
-            col,
-            val,
-        }
+        Self::new(n, row_ptr, col, val)
     }
 
     /// Number of stored entries.
@@ -107,13 +126,13 @@ impl Csr {
         debug_assert_eq!(entries.len(), nodes * nodes * D);
         for (a, &row) in first.iter().enumerate() {
             let row = row as usize;
+            // rows of a node differ where the pattern couples one of its unknowns alone
+            let alike = self.alike[row + 1..row + D].iter().all(|alike| *alike);
             for (b, &column) in first.iter().enumerate() {
-                let offset = self.position(row, column) - self.row_ptr[row];
+                let offset = self.found_place(row, column) - self.row_ptr[row];
                 for i in 0..D {
-                    let guess = self.row_ptr[row + i] + offset;
-                    // rows of a node differ where the pattern couples one of its unknowns alone
-                    let k = match self.row_ptr[row + i + 1] > guess && self.col[guess] == column {
-                        true => guess,
+                    let k = match alike {
+                        true => self.row_ptr[row + i] + offset,
                         false => self.position(row + i, column),
                     };
                     debug_assert_eq!(self.col[k + D - 1], column + D as u32 - 1);
@@ -126,9 +145,35 @@ impl Csr {
         }
     }
 
+    /// Place of an entry, which is likely that of the pair of nodes that was added at this turn before.
+    #[inline(always)]
+    fn found_place(&mut self, i: usize, j: u32) -> usize {
+        let turn = self.added;
+        self.added += 1;
+        if let Some(&place) = self.found.get(turn) {
+            let place = place as usize;
+            if place >= self.row_ptr[i]
+                && place < self.row_ptr[i + 1]
+                && self.col.get(place) == Some(&j)
+            {
+                return place;
+            }
+        }
+        let place = self.position(i, j);
+        self.found.truncate(turn);
+        self.found.push(place as u32);
+        place
+    }
+
     /// Sets every stored entry to zero; the pattern stays.
     pub fn clear(&mut self) {
         self.val.fill(0.0);
+        self.added = 0;
+    }
+
+    /// Takes the values of another matrix of the same pattern.
+    pub fn copy_values(&mut self, other: &Csr) {
+        self.val.copy_from_slice(&other.val);
     }
 
     /// A ← (A + Aᵀ)/2.
@@ -156,13 +201,25 @@ impl Csr {
 
     /// Product y = A x.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        for (i, y) in y[..self.n].iter_mut().enumerate() {
-            let (columns, values) = self.row(i);
-            let mut sum = 0.0;
-            for (&j, a) in columns.iter().zip(values) {
-                sum += a * x[j as usize];
+        let mut i = 0;
+        while i < self.n {
+            // rows of a node have the same columns: these and x are read once for two
+            if self.alike.get(i + 1) == Some(&true) {
+                let ((columns, first), (_, second)) = (self.row(i), self.row(i + 1));
+                let mut sums = [0.0; 2];
+                for ((&j, a), b) in columns.iter().zip(first).zip(second) {
+                    let x = x[j as usize];
+                    sums[0] += a * x;
+                    sums[1] += b * x;
+                }
+                y[i..i + 2].copy_from_slice(&sums);
+                i += 2;
+            } else {
+                let (columns, values) = self.row(i);
+                let products = columns.iter().zip(values);
+                y[i] = products.map(|(&j, a)| a * x[j as usize]).sum();
+                i += 1;
             }
-            *y = sum;
         }
     }
 
@@ -183,37 +240,55 @@ impl Csr {
         ranges: &[std::ops::Range<usize>],
         is_fixed: impl Fn(usize) -> bool,
     ) -> Self {
+        self.gathered(ranges, is_fixed).0
+    }
+
+    /// [`Csr::part`], and for [`Csr::take_again`] where each of its entries comes from.
+    pub(crate) fn gathered(
+        &self,
+        ranges: &[std::ops::Range<usize>],
+        is_fixed: impl Fn(usize) -> bool,
+    ) -> (Self, Vec<u32>) {
         let rows = ranges.iter().cloned().flatten();
         let n = ranges.iter().map(|range| range.len()).sum();
-        let most = rows.clone().map(|i| self.row_ptr[i + 1] - self.row_ptr[i]);
-        let most = most.sum();
+        let most = rows.clone().map(|i| self.row(i).0.len()).sum();
         let mut row_ptr = Vec::with_capacity(n + 1);
-        let (mut col, mut val) = (Vec::with_capacity(most), Vec::with_capacity(most));
+        let (mut col, mut from) = (Vec::with_capacity(most), Vec::with_capacity(most));
         row_ptr.push(0);
         for i in rows {
-            let (columns, values) = self.row(i);
+            let columns = self.row(i).0;
             let alone = is_fixed(i);
             let mut first = 0;
             for range in ranges {
                 let [begin, end] = [range.start, range.end]
                     .map(|end| columns.partition_point(|&j| (j as usize) < end));
-                let entries = columns[begin..end].iter().zip(&values[begin..end]);
-                for (&j, &value) in entries {
+                for (place, &j) in (begin..).zip(&columns[begin..end]) {
                     let j = j as usize;
                     if j == i || !(alone || is_fixed(j)) {
                         col.push((j - range.start + first) as u32);
-                        val.push(if alone { 1.0 } else { value });
+                        from.push(match alone {
+                            true => HELD,
+                            false => (self.row_ptr[i] + place) as u32,
+                        });
                     }
                 }
                 first += range.len();
             }
             row_ptr.push(col.len());
         }
-        Self {
-            n,
-            row_ptr,
-            col,
-            val,
+        let val = vec![0.0; col.len()];
+        let mut part = Self::new(n, row_ptr, col, val);
+        part.take_again(self, &from);
+        (part, from)
+    }
+
+    /// Takes the values of the matrix that it was gathered from, which must have the pattern that it had.
+    pub(crate) fn take_again(&mut self, whole: &Csr, from: &[u32]) {
+        for (value, &from) in self.val.iter_mut().zip(from) {
+            *value = match from {
+                HELD => 1.0,
+                from => whole.val[from as usize],
+            };
         }
     }
 

@@ -17,6 +17,7 @@ pub mod lanes;
 pub mod number;
 mod ordering;
 pub mod packed;
+pub mod part;
 pub mod pattern;
 pub mod reduce;
 pub mod rotation;

@@ -108,18 +108,30 @@ impl Mortar {
 
     /// Area per unit of the reference cell, from the reference coordinates.
     pub(crate) fn measure(&self, index: usize, xi: &[f64; 3], x: &[[f64; 3]]) -> f64 {
+        let table = self.faces[index].kind.table();
+        let mut shape = [0.0; MAX_FACE_NODES];
+        (table.shape)(xi, &mut shape[..table.nodes]);
+        self.stretch(index, xi, x) * self.factor(index, &shape)
+    }
+
+    /// Factor of the measure where the shape functions of the nodes have these values.
+    pub(crate) fn factor(&self, index: usize, shape: &[f64; MAX_FACE_NODES]) -> f64 {
+        let nodes = self.faces[index].kind.table().nodes;
+        let factors = self.factors[index].iter().zip(&shape[..nodes]);
+        factors.map(|(factor, n)| factor * n).sum()
+    }
+
+    /// Measure of the face per unit of the reference cell, from the reference coordinates.
+    pub(crate) fn stretch(&self, index: usize, xi: &[f64; 3], x: &[[f64; 3]]) -> f64 {
         let face = &self.faces[index];
         let (table, mut positions) = (face.kind.table(), [[0.0; 3]; MAX_FACE_NODES]);
         for (position, &node) in positions.iter_mut().zip(face.corners()) {
             *position = x[node as usize];
         }
-        let (mut shape, mut gradients) = ([0.0; MAX_FACE_NODES], [[0.0; 3]; MAX_FACE_NODES]);
-        (table.shape)(xi, &mut shape[..table.nodes]);
-        (table.gradient)(xi, &mut gradients[..table.nodes]);
+        let mut gradients = [[0.0; 3]; MAX_FACE_NODES];
         let nodes = table.nodes;
-        let (measure, _) = map::measure(&positions[..nodes], &gradients[..nodes], table.dim);
-        let factors = self.factors[index].iter().zip(&shape[..nodes]);
-        measure * factors.map(|(factor, n)| factor * n).sum::<f64>()
+        (table.gradient)(xi, &mut gradients[..nodes]);
+        map::measure(&positions[..nodes], &gradients[..nodes], table.dim).0
     }
 
     /// Linear functions of the corners, zero beyond their number.

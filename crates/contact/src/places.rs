@@ -46,12 +46,16 @@ impl Places<'_> {
     /// Current position of a node in m.
     #[inline(always)]
     pub fn of(&self, node: u32) -> [f64; 3] {
-        // nearly all nodes have three translations of their own
+        // nearly all nodes have translations of their own
         let own = self.unknowns.translations_of(node);
         match (self.u.get(own), self.unknowns.carrier(node)) {
             (Some(&[u, v, w]), None) => {
                 let x = &self.x[node as usize];
                 [x[0] + u, x[1] + v, x[2] + w]
+            }
+            (Some(&[u, v]), None) => {
+                let x = &self.x[node as usize];
+                [x[0] + u, x[1] + v, x[2]]
             }
             _ => self.of_any(node),
         }

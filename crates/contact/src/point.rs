@@ -124,6 +124,11 @@ impl Point {
         point
     }
 
+    /// Values of the shape functions of its nodes in the point, zero beyond their number.
+    pub(crate) fn shape(&self) -> &[f64; MAX_FACE_NODES] {
+        &self.shape
+    }
+
     /// Nodes that carry the point, by system number, and the values of their shape functions in it.
     pub fn carriers(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let nodes = self.nodes[..self.count].iter().copied();

@@ -46,6 +46,9 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
     if let (Kind::Quad4, Some(corners)) = (face.kind, positions.first_chunk()) {
         return of_quad(face, point, &Foot::new(corners, point), 0);
     }
+    if let (Kind::Bar2, [a, b]) = (face.kind, positions) {
+        return on_bar(face, [a, b], point);
+    }
     let element = face.kind.table();
     // Seen from the point: far from the origin the rounding of places would keep iterations from their end.
     let mut local = [[0.0; 3]; MAX_FACE_NODES];
@@ -55,7 +58,6 @@ pub fn project(face: &Face, positions: &[[f64; 3]], point: &[f64; 3]) -> Project
     let (local, origin) = (&local[..element.nodes], &[0.0; 3]);
     let (xi, free) = match (element.dim, element.is_quadratic()) {
         (0, _) => ([0.0; 3], [0.0; 3]),
-        (1, false) => on_segment(positions, point),
         (1, true) => curved::on_curve(element, local, origin),
         (2, false) => on_triangle(positions, point),
         (2, true) => curved::on_patch(element, local, origin),
@@ -154,10 +156,26 @@ fn placed(
     }
 }
 
+/// The closest point of a straight line.
+fn on_bar(face: &Face, x: [&[f64; 3]; 2], point: &[f64; 3]) -> Projection {
+    let ([xi, ..], [free, ..]) = on_segment(x, point);
+    let xi = [xi, 0.0, 0.0];
+    let n = [0.5 * (1.0 - xi[0]), 0.5 * (1.0 + xi[0])];
+    let foot = [0, 1, 2].map(|i| n[0] * x[0][i] + n[1] * x[1][i]);
+    let tangent = difference(x[1], x[0]);
+    let length = dot(&tangent, &tangent).sqrt();
+    let normal = match length > 0.0 {
+        true => [tangent[1] / length, -tangent[0] / length, 0.0],
+        false => [0.0; 3],
+    };
+    let inside = free.abs() <= 1.0 + SLACK;
+    placed(face, point, (xi, foot, normal), inside)
+}
+
 /// Closest point of a segment in [-1, 1], and the foot of the perpendicular on its line.
-fn on_segment(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
-    let along = difference(&x[1], &x[0]);
-    let t = dot(&difference(point, &x[0]), &along) / dot(&along, &along);
+fn on_segment(x: [&[f64; 3]; 2], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
+    let along = difference(x[1], x[0]);
+    let t = dot(&difference(point, x[0]), &along) / dot(&along, &along);
     let free = 2.0 * t - 1.0;
     ([free.clamp(-1.0, 1.0), 0.0, 0.0], [free, 0.0, 0.0])
 }
@@ -178,7 +196,7 @@ fn on_triangle(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
     let corners = Kind::Tri3.table().reference;
     let mut best = (f64::INFINITY, [0.0; 3]);
     for [a, b] in edges {
-        let along = on_segment(&[x[a], x[b]], point).0[0];
+        let along = on_segment([&x[a], &x[b]], point).0[0];
         let weights = [0.5 * (1.0 - along), 0.5 * (1.0 + along)];
         let gap = difference(point, &map::point(&[x[a], x[b]], &weights));
         let squared = dot(&gap, &gap);

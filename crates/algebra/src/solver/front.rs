@@ -24,7 +24,7 @@ const KEPT: usize = 16_000_000;
 /// Operations from which on a front is cut into strips.
 const LARGE: f64 = 2e7;
 
-/// Memory of one worker.
+/// Memory of one worker. Its values do not matter.
 pub(super) struct Room {
     /// Of the Cholesky factorisations of blocks on the diagonal.
     scratch: MemBuffer,

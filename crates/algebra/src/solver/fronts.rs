@@ -51,6 +51,8 @@ pub(super) struct Fronts {
     starts: Vec<usize>,
     /// Columns of the widest panel.
     widest: usize,
+    /// Of a tree that one thread takes whole, kept from one factorisation to the next.
+    room: Option<Room>,
 }
 
 impl Fronts {
@@ -66,6 +68,7 @@ impl Fronts {
             places: Vec::new(),
             starts: Vec::with_capacity(connected.len() + 1),
             widest: panels.list.iter().map(|p| p.columns).max().unwrap_or(0),
+            room: None,
         };
         let mut operations: Vec<f64> = panels.list.iter().map(Panel::operations).collect();
         for s in 0..count {
@@ -141,21 +144,28 @@ impl Fronts {
     /// # Errors
     /// The failure with the lowest position.
     pub fn factorise(
-        &self,
+        &mut self,
         panels: &Panels,
         (matrix, connected): (&Csr, &[u32]),
         values: &mut [f64],
     ) -> Result<(), Failure> {
+        let kept = self.room.take();
         let job = Job {
             fronts: self,
             panels,
             matrix,
             connected,
         };
-        match self.pieces.len() > 1 && rayon::current_num_threads() > 1 {
-            true => job.share(values),
-            false => job.subtrees(values),
+        let small = job.fronts.pieces.len() <= 1;
+        if !small && rayon::current_num_threads() > 1 {
+            return job.share(values);
         }
+        let Some(mut room) = kept.or_else(|| Room::new(job.fronts.widest)) else {
+            return Err(Failure::Memory);
+        };
+        let done = job.subtrees(values, &mut room);
+        self.room = small.then_some(room);
+        done
     }
 }
 
@@ -169,13 +179,10 @@ struct Job<'a> {
 
 impl Job<'_> {
     /// All fronts one after the other.
-    fn subtrees(&self, values: &mut [f64]) -> Result<(), Failure> {
-        let Some(mut room) = Room::new(self.fronts.widest) else {
-            return Err(Failure::Memory);
-        };
+    fn subtrees(&self, values: &mut [f64], room: &mut Room) -> Result<(), Failure> {
         let count = self.panels.len() as u32;
         let mut left = Vec::new();
-        self.run(0..count, values, &mut left, &mut room);
+        self.run(0..count, values, &mut left, room);
         match left.into_iter().find_map(|(_, rest)| rest.err()) {
             Some(failure) => Err(failure),
             None => Ok(()),

@@ -39,6 +39,19 @@ impl Block {
         matrix.add_block(unknowns, &self.entries[..self.n * self.n]);
     }
 
+    /// Adds to it what couples the unknowns of the first `own` nodes with each other, and those of the others.
+    pub fn add_sides_to(&self, unknowns: &[u32], own: usize, matrix: &mut Csr) {
+        let own = self.dim * own;
+        for side in [0..own, own..self.n] {
+            for i in side.clone() {
+                for j in side.clone() {
+                    let entry = self.entries[i * self.n + j];
+                    matrix.add(unknowns[i] as usize, unknowns[j] as usize, entry);
+                }
+            }
+        }
+    }
+
     /// Adds value · matrix in the rows of one node and the columns of another.
     pub fn add_nodes(&mut self, row: usize, column: usize, value: f64, matrix: &[[f64; 3]; 3]) {
         for (i, entries) in matrix.iter().enumerate().take(self.dim) {

@@ -102,9 +102,15 @@ impl Merge {
             rows.set_rate(self.rates[k + 1]);
         }
         for (node, blocks) in &self.blocks {
-            rows.add_node(places, *node, &blocks[0].into());
+            let alone = places.unknowns.carrier(*node).is_none();
+            let own = places.unknowns.translations_of(*node);
+            let add = |rows: &mut Rows, direction: &Vec3| match alone {
+                true => rows.add_translations(own.start as u32, &direction.as_slice()[..own.len()]),
+                false => rows.add_node(places, *node, &(*direction).into()),
+            };
+            add(rows, &blocks[0]);
             for (k, rows) in tangents[..dim - 1].iter_mut().enumerate() {
-                rows.add_node(places, *node, &blocks[k + 1].into());
+                add(rows, &blocks[k + 1]);
             }
         }
         for ((node, _), moments) in self.blocks.iter().zip(&self.moments) {

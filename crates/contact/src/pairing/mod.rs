@@ -132,16 +132,17 @@ impl Pairing {
             let stencil = &self.stencils[stencil as usize];
             (stencil, weight * factor * force)
         });
-        add_loads(loads, self.dim, matrix);
+        add_loads(loads, (self.dim, false), matrix);
     }
 
     /// Adds factor · Σ force · ∂²g/∂u² of some points: the sum of [`Pairing::add_curvature`] over them, each stencil looked
-    /// at once however many multipliers share it. `forces`: points and forces in N; `loads`: scratch.
+    /// at once however many multipliers share it. `forces`: points and forces in N; `loads`: scratch; `apart`: what couples the two sides is left
+    /// out, and the pairs within the faces are all that are needed.
     pub fn add_curvatures(
         &self,
         forces: impl Iterator<Item = (usize, f64)>,
         factor: f64,
-        loads: &mut Vec<f64>,
+        (loads, apart): (&mut Vec<f64>, bool),
         matrix: &mut Csr,
     ) {
         loads.clear();
@@ -154,7 +155,7 @@ impl Pairing {
         let loaded = self.stencils.iter().zip(&*loads);
         let loaded = loaded.filter(|(_, load)| **load != 0.0);
         let loaded = loaded.map(|(stencil, load)| (stencil, factor * load));
-        add_loads(loaded, self.dim, matrix);
+        add_loads(loaded, (self.dim, apart), matrix);
     }
 
     /// Lists of unknowns of which [`Pairing::add_curvature`] of a point fills all pairs: those of each stencil, once for
@@ -241,11 +242,18 @@ impl Pairing {
 }
 
 /// Adds the curvature of stencils times their loads; those that follow each other on the same nodes make one block.
-fn add_loads<'a>(loads: impl Iterator<Item = (&'a Stencil, f64)>, dim: usize, matrix: &mut Csr) {
+fn add_loads<'a>(
+    loads: impl Iterator<Item = (&'a Stencil, f64)>,
+    (dim, apart): (usize, bool),
+    matrix: &mut Csr,
+) {
     let mut block = Block::new(dim);
     let mut add = |block: &Block, first: &Stencil| {
         let (unknowns, n) = first.unknowns(dim);
-        block.add_to(&unknowns[..n], matrix);
+        match apart {
+            true => block.add_sides_to(&unknowns[..n], first.carriers().count(), matrix),
+            false => block.add_to(&unknowns[..n], matrix),
+        }
     };
     let mut first: Option<&Stencil> = None;
     // those of carried nodes are left to the iteration: they turn with the rotation too

@@ -23,7 +23,7 @@
 //! of this project.
 
 use carom_algebra::tensor::Vec3;
-use carom_elements::Element;
+use carom_elements::{Element, MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, Face, Projection, project};
 
 use super::Pairing;
@@ -82,6 +82,8 @@ impl Mortar {
                 mortar: self,
                 index,
                 places,
+                x: places.of_face(&self.faces[index]),
+                stretch: self.constant_stretch(index, places.x),
                 span: pairing.span,
                 stencils: &mut pairing.stencils,
                 quadrature: &mut work.quadrature,
@@ -110,6 +112,12 @@ impl Mortar {
             shares = rest;
         }
         pairing.work = work;
+    }
+
+    /// Measure of a face per unit of the reference cell, if it is the same in all of it.
+    fn constant_stretch(&self, index: usize, x: &[[f64; 3]]) -> Option<f64> {
+        let flat = is_linear(self.faces[index].kind.table());
+        flat.then(|| self.stretch(index, &[0.0; 3], x))
     }
 
     /// Appends w_q φ_A of the quadrature points of a face.
@@ -146,6 +154,10 @@ struct Sweep<'a> {
     mortar: &'a Mortar,
     index: usize,
     places: &'a Places<'a>,
+    /// Where the nodes of the face are, m.
+    x: [[f64; 3]; MAX_FACE_NODES],
+    /// [`Mortar::constant_stretch`].
+    stretch: Option<f64>,
     span: [f64; 2],
     stencils: &'a mut Vec<Stencil>,
     quadrature: &'a mut Vec<Quadrature>,
@@ -162,7 +174,7 @@ impl<'a> Sweep<'a> {
         for (xi, &weight) in rule.points.iter().zip(rule.weights) {
             let point = self.point(xi);
             if let Some(stencil) = Stencil::on_obstacle(self.places, &point, obstacle, self.span) {
-                self.push(&Sample { xi: *xi, weight }, stencil);
+                self.push(&Sample { xi: *xi, weight }, &point, stencil);
             }
         }
     }
@@ -174,7 +186,7 @@ impl<'a> Sweep<'a> {
         search: &mut Search,
         found: &mut Vec<u32>,
     ) {
-        let (x, element) = (self.places.of_face(self.face()), self.face().kind.table());
+        let (x, element) = (self.x, self.face().kind.table());
         // a face sees what its first corner sees
         let view = contact.view(self.mortar.multipliers[self.index][0] as usize);
         for cell in cells(element, &x[..element.nodes]) {
@@ -209,16 +221,28 @@ impl<'a> Sweep<'a> {
         // a surface on both sides of its middle is in sight from behind as well
         let both = round || self.face().is_round();
         let outward = cell.normal() * side;
+        // the points of both faces have the same nodes
+        let mut first: Option<Stencil> = None;
         for other in cells(element, x) {
             cell.shared(&other, (side, round, low), |sample| {
                 let point = self.point(&sample.xi);
-                let place = point.place(self.places);
+                let place = map::point(&self.x, point.shape());
                 let foot = project(face, x, &place);
                 let way = Vec3::from(foot.point) - Vec3::from(place);
                 let ahead = !both || outward.dot(&way) > 0.0;
                 if ahead && sees(&foot) {
-                    let stencil = Stencil::on_face(self.places, &point, &place, &foot, face);
-                    self.push(&sample, stencil);
+                    let stencil = match &mut first {
+                        Some(stencil) => {
+                            stencil.shift(&point, &place, &foot);
+                            stencil.clone()
+                        }
+                        None => {
+                            let stencil =
+                                Stencil::on_face(self.places, &point, &place, &foot, face);
+                            first.insert(stencil).clone()
+                        }
+                    };
+                    self.push(&sample, &point, stencil);
                 }
             });
         }
@@ -242,12 +266,22 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    fn push(&mut self, sample: &Sample, stencil: Stencil) {
-        let measure = self.mortar.measure(self.index, &sample.xi, self.places.x);
+    fn push(&mut self, sample: &Sample, point: &Point, stencil: Stencil) {
+        let (mortar, xi) = (self.mortar, &sample.xi);
+        let stretch = match self.stretch {
+            Some(stretch) => stretch,
+            None => mortar.stretch(self.index, xi, self.places.x),
+        };
+        let measure = stretch * mortar.factor(self.index, point.shape());
+        let kind = self.face().kind;
         self.quadrature.push(Quadrature {
             stencil: self.stencils.len() as u32,
             weight: sample.weight * measure,
-            phi: self.mortar.phi(self.index, &sample.xi),
+            // a face of corners alone has the functions of the multipliers
+            phi: match (kind == kind.table().linear, point.shape()) {
+                (true, &[a, b, c, d, ..]) => [a, b, c, d],
+                _ => mortar.phi(self.index, xi),
+            },
         });
         self.stencils.push(stencil);
     }

@@ -148,7 +148,7 @@ impl Cell {
             if end - begin > SLIVER * (b - a) {
                 for (t, w) in LINE {
                     let s = 0.5 * (begin + end) + 0.5 * (end - begin) * t;
-                    each(self.sample(&own, [s, 0.0], faces * 0.5 * (end - begin) * w));
+                    each(self.on_line(&own, s, faces * 0.5 * (end - begin) * w));
                 }
             }
             return;
@@ -169,9 +169,20 @@ impl Cell {
         });
     }
 
+    /// The quadrature point at a place of the line that stands for `length` of it.
+    fn on_line(&self, own: &[[f64; 3]; CORNERS], s: f64, length: f64) -> Sample {
+        let part = (s - own[0][0]) / (own[1][0] - own[0][0]);
+        let [begin, end] = [self.xi[0][0], self.xi[1][0]];
+        let stretch = (end - begin) / (own[1][0] - own[0][0]);
+        Sample {
+            xi: [begin + part * (end - begin), 0.0, 0.0],
+            weight: length * stretch,
+        }
+    }
+
     /// The quadrature point at a place of the plane that stands for `area` of it.
     fn sample(&self, own: &[[f64; 3]; CORNERS], s: [f64; 2], area: f64) -> Sample {
-        let (n, dim) = (self.element.nodes, self.element.dim);
+        let n = self.element.nodes;
         let (mut shape, mut gradients) = ([0.0; CORNERS], [[0.0; 3]; CORNERS]);
         let mut eta = [0.0; 3];
         let mut stretch = 1.0;
@@ -180,9 +191,9 @@ impl Cell {
             (self.element.shape)(&eta, &mut shape[..n]);
             (self.element.gradient)(&eta, &mut gradients[..n]);
             let at = map::point(&own[..n], &shape[..n]);
-            let (j, det) = map::jacobian(&own[..n], &gradients[..n], dim);
+            let (j, det) = map::jacobian(&own[..n], &gradients[..n], 2);
             stretch = det;
-            let r = [s[0] - at[0], if dim == 2 { s[1] - at[1] } else { 0.0 }];
+            let r = [s[0] - at[0], s[1] - at[1]];
             let step = [
                 (j[1][1] * r[0] - j[0][1] * r[1]) / det,
                 (j[0][0] * r[1] - j[1][0] * r[0]) / det,
@@ -193,7 +204,7 @@ impl Cell {
             }
         }
         (self.element.shape)(&eta, &mut shape[..n]);
-        let (_, reference) = map::jacobian(&self.xi[..n], &gradients[..n], dim);
+        let (_, reference) = map::jacobian(&self.xi[..n], &gradients[..n], 2);
         Sample {
             xi: map::point(&self.xi[..n], &shape[..n]),
             weight: area * reference / stretch,

@@ -84,28 +84,26 @@ impl Stencil {
         foot: &Projection,
         face: &Face,
     ) -> Stencil {
-        let (mut positions, mut shape) = ([[0.0; 3]; NODES], [0.0; NODES]);
-        for (position, &node) in positions.iter_mut().zip(face.corners()) {
-            *position = places.of(node);
-        }
-        (face.kind.table().shape)(&foot.xi, &mut shape[..face.corners().len()]);
+        let mut foothold = Foothold::new(face, places.of_face(face), along(places, point));
+        foothold.place(foot, x);
         let stencil = Stencil {
             point: *point,
             gap: foot.gap - point.radius,
             normal: foot.normal,
             first: [0; 2 * NODES],
             carried: false,
-            foot: Foot::Face(Foothold {
-                face: *face,
-                x: positions,
-                xi: foot.xi,
-                shape,
-                r: [0, 1, 2].map(|i| x[i] - foot.point[i]),
-                inside: foot.inside,
-                along: along(places, point),
-            }),
+            foot: Foot::Face(foothold),
         };
         stencil.numbered(places)
+    }
+
+    /// Makes this the stencil of another point of the same nodes, which does not cross, at `x`, with its foot on the same face.
+    pub fn shift(&mut self, point: &Point, x: &[f64; 3], foot: &Projection) {
+        self.point = *point;
+        (self.gap, self.normal) = (foot.gap - point.radius, foot.normal);
+        if let Foot::Face(foothold) = &mut self.foot {
+            foothold.place(foot, x);
+        }
     }
 
     fn numbered(mut self, places: &Places) -> Stencil {

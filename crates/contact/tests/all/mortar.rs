@@ -206,16 +206,24 @@ fn the_curvature_of_all_points_is_the_sum_of_theirs() {
             pairing.add_curvature(point, force, 3.0, &mut one);
         }
         let forces = forces.iter().copied().enumerate();
-        pairing.add_curvatures(forces, 3.0, &mut Vec::new(), &mut all);
-        let mut size = 0.0_f64;
+        let mut apart = matrix(&pairing, n);
+        pairing.add_curvatures(forces.clone(), 3.0, (&mut Vec::new(), false), &mut all);
+        pairing.add_curvatures(forces, 3.0, (&mut Vec::new(), true), &mut apart);
+        let (mut size, mut kept, mut left) = (0.0_f64, 0, 0);
         for i in 0..n {
             for (a, b) in one.row(i).1.iter().zip(all.row(i).1) {
                 // sums of a hundred numbers of the order of the curvature per stencil
                 assert!((a - b).abs() < 1e-12, "{a} {b}");
                 size = size.max(a.abs());
             }
+            for (a, b) in apart.row(i).1.iter().zip(all.row(i).1) {
+                // within a side the same bits, between the two nothing
+                assert!(a == b || *a == 0.0, "{a} {b}");
+                kept += usize::from(*a != 0.0);
+                left += usize::from(a != b);
+            }
         }
-        assert!(size > 1e-2);
+        assert!(size > 1e-2 && kept > 0 && left > 0);
     }
 }
 

@@ -8,6 +8,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::csr::Csr;
+use carom_algebra::part::Part;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::solver::FactorStats;
 use carom_contact::Pairing;
@@ -71,6 +72,8 @@ pub(super) struct Matrices {
     pub(super) held: HeldColumns,
     /// Those of the other parts together, with the rows and columns of held unknowns.
     pub(super) matrix: Option<Csr>,
+    /// Its parts without held unknowns, of each group that the iterations make anew; none before they are first taken from a new pattern.
+    pub(super) free: Vec<Part>,
     /// The whole derivative of what bodies, inertia and loads give, without contact forces, not symmetric; none unless wanted.
     pub(super) whole: Option<Csr>,
     /// Who shares the products of iterations.
@@ -107,6 +110,8 @@ pub(super) struct At<'a> {
     pub(super) proximal: (&'a [Range<usize>], f64),
     /// Whether the derivative without contact forces is kept, where all parts have one that changes.
     pub(super) whole: bool,
+    /// Whether the curvature of contacts is taken within each of their sides alone, where passes make up for what couples the two.
+    pub(super) apart: bool,
 }
 
 /// The contact points whose forces turn with the configuration.
@@ -375,6 +380,7 @@ impl Matrices {
             compliance,
             held,
             matrix: None,
+            free: Vec::new(),
             whole: None,
             ranks: ranks.clone(),
             coupled,

@@ -83,6 +83,7 @@ impl Driver {
             rows: &self.rows,
             proximal: (floats, self.floating.weight),
             whole: self.leaves_out(),
+            apart: self.leaves_out() && self.may_refine(),
         };
         let forces = self.next.interface.force.iter().enumerate();
         let turned = forces.map(|(point, force)| force * self.turning(system.contact_of(point)));

@@ -46,10 +46,13 @@ impl Driver {
             self.turning(contact) != 0.0 && self.system.contacts[contact].sliding == Sliding::Finite
         };
         self.effective.has_whole_tangent()
-            && !self.floats()
-            && !self.has_links()
-            && self.vectors.push.is_empty()
+            && self.may_refine()
             && (self.between() || self.candidates.iter().any(turns))
+    }
+
+    /// Whether it may be, by what the step has beside bodies and contacts.
+    pub(super) fn may_refine(&self) -> bool {
+        !self.floats() && !self.has_links() && self.vectors.push.is_empty()
     }
 
     /// Makes the motion `dx` of the iteration and the contact forces after it those of the problem with bodies alone linearised.

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
+use carom_algebra::part::Part;
 use carom_algebra::pattern::Cliques;
 use carom_bodies::Placement;
 
@@ -27,7 +28,7 @@ impl Matrices {
     ) -> Result<(), Error> {
         let first = self.first;
         self.compliance.forget(|group| group >= first);
-        self.renew_pattern(system, turning, retired);
+        self.renew_pattern(system, turning, at.apart, retired);
         let Some(mut a) = self.matrix.take() else {
             return Ok(());
         };
@@ -35,7 +36,7 @@ impl Matrices {
         let assembled = self.assemble(system, at, &mut a);
         match &mut self.whole {
             whole if !at.whole || first > 0 => *whole = None,
-            Some(whole) => whole.clone_from(&a),
+            Some(whole) => whole.copy_values(&a),
             whole => *whole = Some(a.clone()),
         }
         a.symmetrise();
@@ -43,7 +44,7 @@ impl Matrices {
         let forces = forces.filter(|(_, force)| *force != 0.0);
         turning
             .pairing
-            .add_curvatures(forces, -turning.factor, loads, &mut a);
+            .add_curvatures(forces, -turning.factor, (loads, at.apart), &mut a);
         for group in &mut self.operators.groups[first..] {
             for i in group.parts.iter().cloned().flatten() {
                 self.diagonal[i] = a.get(i, i);
@@ -81,7 +82,7 @@ impl Matrices {
         retired: &mut Work,
     ) -> Result<(), Error> {
         let (floating, weight) = at.proximal;
-        for group in &mut self.operators.groups[self.first..] {
+        for (k, group) in self.operators.groups[self.first..].iter_mut().enumerate() {
             let fixed: Vec<bool> = group
                 .parts
                 .iter()
@@ -89,7 +90,13 @@ impl Matrices {
                 .flatten()
                 .map(|i| system.fixed[i])
                 .collect();
-            let mut free = a.part(&group.parts, |i| system.fixed[i]);
+            match self.free.get_mut(k) {
+                Some(free) => free.renew(a),
+                None => self
+                    .free
+                    .push(Part::new(a, &group.parts, |i| system.fixed[i])),
+            }
+            let free = self.free[k].matrix_mut();
             let mut begin = 0;
             for part in &group.parts {
                 if floating.contains(part) {
@@ -104,11 +111,11 @@ impl Matrices {
             let unknowns = group.parts.iter().cloned().flatten();
             let nodes: Vec<u32> = unknowns.map(|unknown| all[unknown]).collect();
             let factored = match &mut group.operator {
-                Some(Operator::Factored(factor)) => factor.refactor(&free),
+                Some(Operator::Factored(factor)) => factor.refactor(free),
                 Some(Operator::Iterated(Iterated {
                     solver: Some(solver),
                     ..
-                })) => solver.renew(free),
+                })) => solver.renew(free.clone()),
                 other => {
                     let of = Use {
                         part: None,
@@ -117,7 +124,7 @@ impl Matrices {
                         ranks: &self.ranks,
                     };
                     let none = vec![false; free.n];
-                    let new = choice::operator((system, of), &free, &none, &nodes);
+                    let new = choice::operator((system, of), free, &none, &nodes);
                     new.map(|new| *other = Some(new))
                 }
             };
@@ -149,12 +156,18 @@ impl Matrices {
 
     /// Pattern of the bodies and of the points whose forces turn, and the groups of parts that these join; the factor of a group is dropped where
     /// its pattern changes.
-    fn renew_pattern(&mut self, system: &System, turning: &Turning, retired: &mut Work) {
+    fn renew_pattern(
+        &mut self,
+        system: &System,
+        turning: &Turning,
+        apart: bool,
+        retired: &mut Work,
+    ) {
         let part_of = |unknown: u32| system.part_of(unknown as usize);
         let mut rows: Vec<(usize, Vec<u32>)> = Vec::new();
         let mut joined: Vec<usize> = (0..self.iterated.len()).collect();
         let loaded = turning.forces.iter().enumerate();
-        for (point, _) in loaded.filter(|(_, force)| **force != 0.0) {
+        for (point, _) in loaded.filter(|(_, force)| **force != 0.0 && !apart) {
             turning.pairing.cliques(point, |unknowns| {
                 let parts = unknowns.iter().map(|&unknown| part_of(unknown));
                 let mut parts = parts.filter(|&part| self.iterated[part]);
@@ -223,6 +236,7 @@ impl Matrices {
             cliques.push(row);
         }
         self.matrix = Some(Csr::from_cliques(n, &cliques));
+        (self.whole, self.free) = (None, Vec::new());
     }
 
     /// `inertia.x M + force.x K + damping` of the parts that are not linear, into a matrix of zeros.
