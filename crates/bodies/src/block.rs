@@ -191,6 +191,17 @@ impl Block {
         }
     }
 
+    /// Mean of the nodes of an element in the mesh, m.
+    pub(crate) fn middle(&self, element: usize) -> [f64; 3] {
+        let (chunk, nodes) = (element / self.chunk_length(), self.kind.table().nodes);
+        let chunk = &self.chunks[chunk];
+        let first = nodes * (element % self.chunk_length());
+        let own = &chunk.connectivity[first..first + nodes];
+        own.iter().fold([0.0; 3], |sum, &place| {
+            [0, 1, 2].map(|i| sum[i] + chunk.x[place as usize][i] / nodes as f64)
+        })
+    }
+
     /// Calls `visit` with the axis and the volume (m³) of each bar.
     pub(crate) fn bars(&self, visit: &mut dyn FnMut(&[f64; 3], f64)) {
         let Physics::Bar(bar) = &self.physics else {

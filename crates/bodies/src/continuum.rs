@@ -118,25 +118,6 @@ pub(crate) fn slope<const N: usize>(at: &Local<N>, u: &[[f64; 3]; N]) -> [[f64; 
     h
 }
 
-#[inline]
-fn strain<const N: usize>(
-    law: &Law,
-    point: &Point,
-    at: &Local<N>,
-    u: &[[f64; 3]; N],
-) -> [[f64; 3]; 3] {
-    let mut h = slope(at, u);
-    if law.axisymmetric {
-        h[2][2] = (0..N).map(|a| point.n[a] * u[a][0]).sum::<f64>() / at.radius;
-    }
-    let shear = |i: usize, j: usize| 0.5 * (h[i][j] + h[j][i]);
-    [
-        [h[0][0], shear(0, 1), shear(0, 2)],
-        [shear(0, 1), h[1][1], shear(1, 2)],
-        [shear(0, 2), shear(1, 2), h[2][2]],
-    ]
-}
-
 /// Stiffness of one element, row-major, `dim * N` squared entries in N/m:
 /// K_ab,ij = ∫ λ t_ai t_bj + μ (dN_a,j dN_b,i + δ_ij dN_a · dN_b) dV, with t_a the divergence of N_a, which in
 /// axisymmetry holds N_a/r in its first component, beside the term 2μ N_a N_b / r². `weights`: at the points, factors
@@ -206,20 +187,55 @@ pub(crate) fn mass<const N: usize>(
 }
 
 /// Volume of one element in m³ (a plane element times its thickness, an axisymmetric one over the full turn) and
-/// its mean stress tensor in Pa.
+/// its mean stress tensor in Pa, which is the stress of the mean strain.
 pub(crate) fn stress<const N: usize>(
     law: &Law,
     points: &Points,
     x: &[[f64; 3]; N],
     u: &[[f64; 3]; N],
 ) -> (f64, Mat3) {
-    let (mut volume, mut stress) = (0.0, Mat3::zeros());
+    let (mut volume, mut h) = (0.0, Mat3::zeros());
     for point in &points.points {
-        let at = local(law, point, x);
-        let e = strain(law, point, &at, u);
-        let e = Mat3::from_fn(|i, j| e[i][j]);
-        stress += law.material.stress(law.plane, &e) * at.volume;
-        volume += at.volume;
+        let dn = &point.dn[..N];
+        let (jacobian, det) = map::jacobian(x, dn, law.dim);
+        // ∂u/∂x = ∂u/∂ξ adj(J) / det J
+        let slope = by_reference(u, dn) * adjugate(&jacobian);
+        let mut weight = point.weight * law.thickness;
+        if law.axisymmetric {
+            let radius = map::point(x, &point.n[..N])[0];
+            weight *= std::f64::consts::TAU * radius;
+            let out = (0..N).map(|a| point.n[a] * u[a][0]).sum::<f64>();
+            h[(2, 2)] += weight * det * out / radius;
+        }
+        h += weight * slope;
+        volume += weight * det;
     }
-    (volume, stress / volume)
+    let mean = h / volume;
+    let strain = 0.5 * (mean + mean.transpose());
+    (volume, law.material.stress(law.plane, &strain))
+}
+
+/// ∂u/∂ξ.
+#[inline]
+fn by_reference(u: &[[f64; 3]], dn: &[[f64; 3]]) -> Mat3 {
+    let mut sum = Mat3::zeros();
+    for (u, dn) in u.iter().zip(dn) {
+        for i in 0..3 {
+            for k in 0..3 {
+                sum[(i, k)] += u[i] * dn[k];
+            }
+        }
+    }
+    sum
+}
+
+/// J⁻¹ det J.
+#[inline]
+fn adjugate(j: &[[f64; 3]; 3]) -> Mat3 {
+    let minor = |r: usize, s: usize, c: usize, d: usize| j[r][c] * j[s][d] - j[r][d] * j[s][c];
+    Mat3::from_fn(|k, i| {
+        let [r, s] = [(i + 1) % 3, (i + 2) % 3];
+        let [c, d] = [(k + 1) % 3, (k + 2) % 3];
+        minor(r, s, c, d)
+    })
 }

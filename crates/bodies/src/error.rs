@@ -211,12 +211,17 @@ pub enum Error {
         found: &'static str,
     },
     /// A law that gives no stress at an integration point.
-    #[error("body '{body}': cell {} of block {}, integration point {point}: {failure}", cell.index, cell.block)]
+    #[error(
+        "body '{body}': cell {} of block {}, whose middle was at ({:.4e}, {:.4e}, {:.4e}) m, integration point {point}: {failure}",
+        cell.index, cell.block, middle[0], middle[1], middle[2]
+    )]
     NoStress {
         /// Name of the body.
         body: String,
         /// The cell.
         cell: ElementId,
+        /// Its middle in the mesh, m.
+        middle: [f64; 3],
         /// Number of the point in the rule of the cell, from 0.
         point: usize,
         /// Why.

@@ -1,6 +1,40 @@
 //! Why a system could not be built or a step not be taken.
 
+use std::fmt;
+
 use thiserror::Error as ThisError;
+
+use crate::system::System;
+
+/// A node of the mesh that a message names.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshNode {
+    /// Its number in the mesh, from 0.
+    pub number: u32,
+    /// Its place in the mesh, m.
+    pub x: [f64; 3],
+}
+
+impl MeshNode {
+    /// Of a node by its system number.
+    pub(crate) fn of(system: &System, node: u32) -> MeshNode {
+        MeshNode {
+            number: system.mesh_node[node as usize],
+            x: system.x[node as usize],
+        }
+    }
+}
+
+impl fmt::Display for MeshNode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.x;
+        let number = self.number;
+        write!(
+            f,
+            "node {number} of the mesh at ({x:.4e}, {y:.4e}, {z:.4e}) m"
+        )
+    }
+}
 
 /// Errors of this crate.
 #[derive(Debug, ThisError)]
@@ -12,12 +46,12 @@ pub enum Error {
     #[error(transparent)]
     Body(#[from] carom_bodies::Error),
     /// A matrix could not be factorised.
-    #[error("the {matrix} of the part that holds node {node} of the mesh: {cause}")]
+    #[error("the {matrix} of the part that holds {node}: {cause}")]
     Factor {
         /// Which matrix.
         matrix: &'static str,
-        /// A node of the mesh in the part, from 0.
-        node: u32,
+        /// A node in the part.
+        node: MeshNode,
         /// Cause.
         cause: carom_algebra::Error,
     },
@@ -57,7 +91,7 @@ pub enum Error {
     },
     /// A displacement, velocity or force is infinite or not a number.
     #[error(
-        "step {step}, t = {time:e} s: the {quantity} is not finite at node {node} of the mesh, in body '{body}', cell {} of block {}; the step is too large for the scheme, or the model is not supported",
+        "step {step}, t = {time:e} s: the {quantity} is not finite at {node}, in body '{body}', cell {} of block {}; the step is too large for the scheme, or the model is not supported",
         cell.index, cell.block
     )]
     NotFinite {
@@ -67,8 +101,8 @@ pub enum Error {
         time: f64,
         /// What is not finite.
         quantity: &'static str,
-        /// The first node of the mesh where it is not.
-        node: u32,
+        /// The first node where it is not.
+        node: MeshNode,
         /// Its body.
         body: Box<str>,
         /// The first cell of the body at the node.
@@ -143,7 +177,7 @@ pub enum Error {
     /// The equations of a step were not solved.
     #[error(
         "step {step}, t = {time:e} s: no equilibrium in {passes} iterations with a step of {dt:.4e} s; \
-         the residual is largest at node {node} of the mesh, in body '{body}', cell {} of block {}{contact}; residuals relative to the forces: {history}",
+         the residual is largest at {node}, in body '{body}', cell {} of block {}{contact}; residuals relative to the forces: {history}",
         cell.index, cell.block
     )]
     Equilibrium {
@@ -155,8 +189,8 @@ pub enum Error {
         dt: f64,
         /// Iterations of the last attempt.
         passes: usize,
-        /// Node of the mesh with the largest residual.
-        node: u32,
+        /// Node with the largest residual.
+        node: MeshNode,
         /// Its body.
         body: Box<str>,
         /// The first cell of the body at the node.

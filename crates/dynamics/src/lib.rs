@@ -52,7 +52,7 @@ pub use driver::linked;
 pub use driver::paired;
 pub use driver::record::contact_report;
 pub use driver::{Driver, RankShare, why_not_on_ranks};
-pub use error::Error;
+pub use error::{Error, MeshNode};
 pub use exchange::Exchange;
 pub use impact::{Impact, NoRestitution};
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};

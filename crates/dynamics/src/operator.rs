@@ -7,7 +7,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
 
-use crate::error::Error;
+use crate::error::{Error, MeshNode};
 use crate::iterated::Iterated;
 use crate::low_rank::LowRank;
 use crate::system::{LinkRow, System, push_cliques};
@@ -448,10 +448,9 @@ pub(crate) fn unsolvable(
     part: &Range<usize>,
     (matrix, cause): (&'static str, AlgebraError),
 ) -> Error {
-    let node = system.unknowns.node(part.start) as usize;
     Error::Factor {
         matrix,
-        node: system.mesh_node[node],
+        node: MeshNode::of(system, system.unknowns.node(part.start)),
         cause,
     }
 }

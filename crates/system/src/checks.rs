@@ -130,14 +130,15 @@ impl System {
                 contact: contact.name.clone(),
             });
         }
-        let critical = self.critical_step();
-        if scheme.is_explicit() && self.dt > critical {
-            Err(Error::Unstable {
+        if !scheme.is_explicit() {
+            return Ok(());
+        }
+        match self.critical_step() {
+            critical if self.dt > critical => Err(Error::Unstable {
                 dt: self.dt,
                 critical,
-            })
-        } else {
-            Ok(())
+            }),
+            _ => Ok(()),
         }
     }
 

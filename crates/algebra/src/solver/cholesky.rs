@@ -188,7 +188,7 @@ impl Cholesky {
     ///
     /// Each column visits only the elimination-tree paths of its unknowns. Columns with neighbouring paths are computed
     /// together, but the bits of a column depend on the factor and its own row alone: neither on its company nor on the
-    /// number of threads. Memory: [`Response::bytes`] each, plus 64 bytes per unknown and thread while it runs.
+    /// number of threads. Memory: [`Response::bytes`] each, plus 128 bytes per unknown and thread while it runs.
     pub fn respond(&mut self, rows: &[SparseRow]) -> Vec<Response> {
         self.stats.responses += rows.len();
         let this = &*self;

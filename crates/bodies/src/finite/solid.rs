@@ -131,6 +131,7 @@ impl Solid {
             Fault::Law { point, failure } => Error::NoStress {
                 body,
                 cell: self.cells()[place],
+                middle: self.middle(place),
                 point,
                 failure,
             },

@@ -4,7 +4,7 @@ use carom_algebra::Error as AlgebraError;
 use carom_nonsmooth::Condensed;
 
 use super::Driver;
-use crate::error::Error;
+use crate::error::{Error, MeshNode};
 
 impl Driver {
     /// Forces and statuses of the candidates; the motion of the forces is added to the begun solve. `factor`: that of contact forces in the
@@ -44,7 +44,7 @@ impl Driver {
         };
         Error::Factor {
             matrix: "effective matrix",
-            node: system.mesh_node[system.unknowns.node(unknown) as usize],
+            node: MeshNode::of(system, system.unknowns.node(unknown)),
             cause,
         }
     }

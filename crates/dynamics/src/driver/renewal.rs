@@ -12,7 +12,7 @@ use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use crate::choice::{self, Use};
 use crate::costs::Work;
-use crate::error::Error;
+use crate::error::{Error, MeshNode};
 use crate::iterated::Iterated;
 use crate::operator::{Operator, add_rows, push_rows};
 use crate::system::{System, push_cliques};
@@ -146,7 +146,7 @@ impl Matrices {
                     .unwrap_or(0);
                 return Err(Error::Factor {
                     matrix: "effective matrix",
-                    node: system.mesh_node[system.unknowns.node(unknown) as usize],
+                    node: MeshNode::of(system, system.unknowns.node(unknown)),
                     cause,
                 });
             }

@@ -6,7 +6,7 @@ use carom_mesh::ElementId;
 
 use super::loads::damping_rate;
 use super::{Driver, Which};
-use crate::error::Error;
+use crate::error::{Error, MeshNode};
 
 /// Where an iteration stands.
 pub(super) struct Standing {
@@ -241,14 +241,14 @@ impl Driver {
     }
 
     /// Node of the mesh of an unknown, its body, and the first cell of the body at the node.
-    fn place_of(&self, unknown: usize) -> (u32, Box<str>, ElementId) {
+    fn place_of(&self, unknown: usize) -> (MeshNode, Box<str>, ElementId) {
         let system = &*self.system;
         let node = system.unknowns.node(unknown);
         let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n == node);
         let body = system.body_masses.iter().position(owns).unwrap_or(0);
         let body = &system.bodies[body];
         let cell = first_cell(body, node);
-        (system.mesh_node[node as usize], body.name().into(), cell)
+        (MeshNode::of(system, node), body.name().into(), cell)
     }
 
     /// # Errors

@@ -31,7 +31,8 @@ impl Derived {
     ) -> Derived {
         let mut derived = Derived::default();
         if asked.strain {
-            let strains = strains((system, bodies), motion);
+            let mut strains = Vec::new();
+            each_deformation((system, bodies), motion, |of| strains.push(of.strain()));
             derived.principal_strain = strains.iter().map(principal).collect();
             derived.strain = strains.iter().map(in_order).collect();
         }
@@ -127,10 +128,77 @@ pub(crate) fn principal(tensor: &Mat3) -> [f64; 3] {
     values
 }
 
-/// Strain at the middle of each cell of bodies.
-pub(crate) fn strains((system, bodies): (&System, &Bodies), motion: &Motion) -> Vec<Mat3> {
+/// The largest magnitude of a principal strain at the middle of the cells of bodies that are there, and its cell; the first of equals.
+pub(crate) fn largest_principal_strain(
+    of: (&System, &Bodies),
+    motion: &Motion,
+    is_there: impl Fn(usize) -> bool,
+) -> Option<(f64, u32)> {
+    let mut best = (f64::NEG_INFINITY, 0);
+    let mut cell = 0;
+    each_deformation(of, motion, |deformation| {
+        // principal values are sought where there may be a larger one, in few cells
+        if deformation.bound() * (1.0 + 1e-9) > best.0 && is_there(cell) {
+            let [first, _, last] = principal(&deformation.strain());
+            let value = first.max(-last);
+            if value.is_finite() && value > best.0 {
+                best = (value, cell as u32);
+            }
+        }
+        cell += 1;
+    });
+    best.0.is_finite().then_some(best)
+}
+
+/// What the strain at the middle of a cell follows from.
+enum Deformation {
+    /// ε itself.
+    Strain(Mat3),
+    /// F Fᵀ, of which it is half the logarithm.
+    LeftCauchyGreen(Mat3),
+}
+
+impl Deformation {
+    fn of(f: &Mat3, turns: bool) -> Deformation {
+        match turns {
+            true => Deformation::LeftCauchyGreen(f * f.transpose()),
+            false => Deformation::Strain(0.5 * (f + f.transpose()) - Mat3::identity()),
+        }
+    }
+
+    fn strain(&self) -> Mat3 {
+        match self {
+            Deformation::Strain(strain) => *strain,
+            Deformation::LeftCauchyGreen(b) if !b.iter().all(|entry| entry.is_finite()) => {
+                Mat3::from_element(f64::NAN)
+            }
+            Deformation::LeftCauchyGreen(b) => {
+                let mut eigen = b.symmetric_eigen();
+                eigen.eigenvalues = eigen.eigenvalues.map(|stretch| 0.5 * stretch.ln());
+                eigen.recompose()
+            }
+        }
+    }
+
+    /// No principal strain is larger: eigenvalues of ε are at most |ε|, those of F Fᵀ at least 1 - |F Fᵀ - I|, below which ½ ln is larger than above.
+    fn bound(&self) -> f64 {
+        match self {
+            Deformation::Strain(strain) => strain.norm(),
+            Deformation::LeftCauchyGreen(b) => match (b - Mat3::identity()).norm() {
+                apart if apart < 1.0 => -0.5 * (-apart).ln_1p(),
+                _ => f64::INFINITY,
+            },
+        }
+    }
+}
+
+/// Deformation at the middle of each cell of bodies.
+fn each_deformation(
+    (system, bodies): (&System, &Bodies),
+    motion: &Motion,
+    mut each: impl FnMut(&Deformation),
+) {
     let places = system.places(0.0, &motion.u, &motion.frames);
-    let mut strains = Vec::new();
     for (body, _) in bodies {
         let turns = body.has_finite_motion() || matches!(body, Body::Rigid(_));
         let is_solid = matches!(body, Body::Solid(_) | Body::Rigid(_) | Body::Reduced(_));
@@ -143,16 +211,15 @@ pub(crate) fn strains((system, bodies): (&System, &Bodies), motion: &Motion) -> 
                 (x[k], y[k]) = (system.x[number as usize], places.of(number));
             }
             let cell = (element, &x[..nodes.len()], &y[..nodes.len()]);
-            strains.push(match is_solid {
+            each(&match is_solid {
                 true if element.dim == system.dim => {
-                    strain(&gradient(cell, system.axisymmetric), turns)
+                    Deformation::of(&gradient(cell, system.axisymmetric), turns)
                 }
-                true if element.dim == 1 => along(cell, turns),
-                _ => Mat3::zeros(),
+                true if element.dim == 1 => Deformation::Strain(along(cell, turns)),
+                _ => Deformation::Strain(Mat3::zeros()),
             });
         }
     }
-    strains
 }
 
 /// Reference and current places of the nodes of a cell, m.
@@ -191,19 +258,6 @@ fn gradient((element, x, y): Cell, axisymmetric: bool) -> Mat3 {
     f
 }
 
-fn strain(f: &Mat3, turns: bool) -> Mat3 {
-    if !turns {
-        return 0.5 * (f + f.transpose()) - Mat3::identity();
-    }
-    let b = f * f.transpose();
-    if !b.iter().all(|component| component.is_finite()) {
-        return Mat3::from_element(f64::NAN);
-    }
-    let mut eigen = b.symmetric_eigen();
-    eigen.eigenvalues = eigen.eigenvalues.map(|stretch| 0.5 * stretch.ln());
-    eigen.recompose()
-}
-
 /// Of a bar in the plane or in space.
 fn along((_, x, y): Cell, turns: bool) -> Mat3 {
     let way = |x: &[[f64; 3]]| [0, 1, 2].map(|i| x[1][i] - x[0][i]);
@@ -223,6 +277,7 @@ fn along((_, x, y): Cell, turns: bool) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use carom_elements::Kind;
+    use carom_testing::Random;
 
     use super::*;
 
@@ -269,6 +324,7 @@ mod tests {
         let (sine, cosine) = 0.7_f64.sin_cos();
         let turn = Mat3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
         let stretch = Mat3::from_diagonal(&[1.2, 0.8, 1.0].into());
+        let strain = |f: &Mat3, turns: bool| Deformation::of(f, turns).strain();
         let logarithmic = strain(&(turn * stretch), true);
         let expected = [1.2_f64.ln(), 0.0, 0.8_f64.ln()];
         for (found, expected) in principal(&logarithmic).iter().zip(expected) {
@@ -280,6 +336,28 @@ mod tests {
         let small =
             Mat3::identity() + 1e-8 * Mat3::new(1.0, 2.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 3.0);
         assert!((strain(&small, true) - strain(&small, false)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn no_principal_strain_is_above_its_bound() {
+        let mut random = Random(5);
+        let mut sharp = 0;
+        for _ in 0..2000 {
+            let size = 2.0 * random.next();
+            let f = Mat3::identity() + size * Mat3::from_fn(|_, _| random.next());
+            for turns in [false, true] {
+                let deformation = Deformation::of(&f, turns);
+                let [first, _, last] = principal(&deformation.strain());
+                let (value, bound) = (first.max(-last), deformation.bound());
+                // what is pressed flat has none
+                if !value.is_finite() {
+                    continue;
+                }
+                assert!(value <= bound * (1.0 + 1e-9), "{value} {bound}");
+                sharp += usize::from(bound < 1.5 * value);
+            }
+        }
+        assert!(sharp > 500, "{sharp}");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::results::cells::{
     ShellFields, all_bodies, cell_stresses, cell_von_mises, deleted, plastic_strains,
 };
-use crate::results::derived::{principal, strains};
+use crate::results::derived::largest_principal_strain;
 use crate::results::stills::Seen;
 
 /// A state that is kept, in single precision but for its largest values.
@@ -94,18 +94,14 @@ impl Still {
             cells.map(|cell| values[*cell as usize] as f32).collect()
         };
         let pressure: Vec<f64> = stress.iter().map(|s| -(s[0] + s[1] + s[2]) / 3.0).collect();
-        let strains = strains((system, &bodies), motion);
-        let strains = strains
-            .iter()
-            .map(principal)
-            .map(|[first, _, last]| first.max(-last));
-        let strains: Vec<f64> = strains.collect();
         let is_there = |cell: usize| deleted.as_ref().is_none_or(|deleted| !deleted[cell]);
-        let largest = |values: &[f64]| {
-            let (value, cell) = largest(values, is_there)?;
-            let moved = middle_moved(system, motion, cell);
-            Some(Largest { value, cell, moved })
+        let strained = largest_principal_strain((system, &bodies), motion, is_there);
+        let at = |(value, cell): (f64, u32)| Largest {
+            value,
+            cell,
+            moved: middle_moved(system, motion, cell),
         };
+        let largest = |values: &[f64]| largest(values, is_there).map(at);
         Still {
             step,
             time,
@@ -118,7 +114,7 @@ impl Still {
             largest: [
                 largest(&von_mises),
                 plastic.and_then(|plastic| largest(&plastic)),
-                largest(&strains),
+                strained.map(at),
             ],
             kinetic: kinetic(system, motion),
             strain: strain(system, motion),
