@@ -277,18 +277,6 @@ impl Solid {
         &self.blocks
     }
 
-    /// Middle of an element in the mesh, m.
-    pub(crate) fn middle(&self, place: usize) -> [f64; 3] {
-        let mut first = place;
-        for block in &self.blocks {
-            match first.checked_sub(block.len()) {
-                Some(rest) => first = rest,
-                None => return block.middle(first),
-            }
-        }
-        [f64::NAN; 3]
-    }
-
     /// Unknowns of a node.
     pub(crate) fn dim(&self) -> usize {
         self.dim

@@ -125,6 +125,18 @@ impl Solid {
         }
     }
 
+    /// Middle of an element in the mesh, m.
+    fn middle(&self, place: usize) -> [f64; 3] {
+        let mut first = place;
+        for block in self.blocks() {
+            match first.checked_sub(block.len()) {
+                Some(rest) => first = rest,
+                None => return block.middle(first),
+            }
+        }
+        [f64::NAN; 3]
+    }
+
     pub(super) fn failed(&self, (place, fault): Failed) -> Error {
         let body = self.name().to_owned();
         match fault {
