@@ -17,11 +17,11 @@ pub struct MeshNode {
 
 impl MeshNode {
     /// Of a node by its system number.
-    pub(crate) fn of(system: &System, node: u32) -> MeshNode {
-        MeshNode {
+    pub(crate) fn of(system: &System, node: u32) -> Box<MeshNode> {
+        Box::new(MeshNode {
             number: system.mesh_node[node as usize],
             x: system.x[node as usize],
-        }
+        })
     }
 }
 
@@ -51,7 +51,7 @@ pub enum Error {
         /// Which matrix.
         matrix: &'static str,
         /// A node in the part.
-        node: MeshNode,
+        node: Box<MeshNode>,
         /// Cause.
         cause: carom_algebra::Error,
     },
@@ -102,7 +102,7 @@ pub enum Error {
         /// What is not finite.
         quantity: &'static str,
         /// The first node where it is not.
-        node: MeshNode,
+        node: Box<MeshNode>,
         /// Its body.
         body: Box<str>,
         /// The first cell of the body at the node.
@@ -190,7 +190,7 @@ pub enum Error {
         /// Iterations of the last attempt.
         passes: usize,
         /// Node with the largest residual.
-        node: MeshNode,
+        node: Box<MeshNode>,
         /// Its body.
         body: Box<str>,
         /// The first cell of the body at the node.

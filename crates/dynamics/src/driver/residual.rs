@@ -241,7 +241,7 @@ impl Driver {
     }
 
     /// Node of the mesh of an unknown, its body, and the first cell of the body at the node.
-    fn place_of(&self, unknown: usize) -> (MeshNode, Box<str>, ElementId) {
+    fn place_of(&self, unknown: usize) -> (Box<MeshNode>, Box<str>, ElementId) {
         let system = &*self.system;
         let node = system.unknowns.node(unknown);
         let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n == node);
