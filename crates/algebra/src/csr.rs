@@ -6,7 +6,7 @@
 use crate::pattern::Cliques;
 
 /// Marks in [`Csr::gathered`] the 1 on the diagonal of an unknown that is held.
-const HELD: u32 = u32::MAX;
+const HELD: usize = usize::MAX;
 
 /// Square sparse matrix with both triangles and the whole diagonal stored.
 #[derive(Clone, Debug)]
@@ -248,7 +248,7 @@ impl Csr {
         &self,
         ranges: &[std::ops::Range<usize>],
         is_fixed: impl Fn(usize) -> bool,
-    ) -> (Self, Vec<u32>) {
+    ) -> (Self, Vec<usize>) {
         let rows = ranges.iter().cloned().flatten();
         let n = ranges.iter().map(|range| range.len()).sum();
         let most = rows.clone().map(|i| self.row(i).0.len()).sum();
@@ -268,7 +268,7 @@ impl Csr {
                         col.push((j - range.start + first) as u32);
                         from.push(match alone {
                             true => HELD,
-                            false => (self.row_ptr[i] + place) as u32,
+                            false => self.row_ptr[i] + place,
                         });
                     }
                 }
@@ -283,11 +283,11 @@ impl Csr {
     }
 
     /// Takes the values of the matrix that it was gathered from, which must have the pattern that it had.
-    pub(crate) fn take_again(&mut self, whole: &Csr, from: &[u32]) {
+    pub(crate) fn take_again(&mut self, whole: &Csr, from: &[usize]) {
         for (value, &from) in self.val.iter_mut().zip(from) {
             *value = match from {
                 HELD => 1.0,
-                from => whole.val[from as usize],
+                from => whole.val[from],
             };
         }
     }

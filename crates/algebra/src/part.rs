@@ -7,7 +7,7 @@ use crate::csr::Csr;
 /// The rows and columns of some unknowns of a matrix, and where its entries come from.
 pub struct Part {
     matrix: Csr,
-    from: Vec<u32>,
+    from: Vec<usize>,
 }
 
 impl Part {

@@ -6,6 +6,7 @@
 
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES, Rule, map};
+use carom_materials::tensor::cofactor;
 use carom_materials::{Elastic, Plane};
 
 use crate::Kinematics;
@@ -198,8 +199,9 @@ pub(crate) fn stress<const N: usize>(
     for point in &points.points {
         let dn = &point.dn[..N];
         let (jacobian, det) = map::jacobian(x, dn, law.dim);
-        // ∂u/∂x = ∂u/∂ξ adj(J) / det J
-        let slope = by_reference(u, dn) * adjugate(&jacobian);
+        // ∂u/∂x = ∂u/∂ξ Cᵀ / det J
+        let cofactors = cofactor(&jacobian);
+        let slope = by_reference(u, dn) * Mat3::from_fn(|k, i| cofactors[i][k]);
         let mut weight = point.weight * law.thickness;
         if law.axisymmetric {
             let radius = map::point(x, &point.n[..N])[0];
@@ -227,15 +229,4 @@ fn by_reference(u: &[[f64; 3]], dn: &[[f64; 3]]) -> Mat3 {
         }
     }
     sum
-}
-
-/// J⁻¹ det J.
-#[inline]
-fn adjugate(j: &[[f64; 3]; 3]) -> Mat3 {
-    let minor = |r: usize, s: usize, c: usize, d: usize| j[r][c] * j[s][d] - j[r][d] * j[s][c];
-    Mat3::from_fn(|k, i| {
-        let [r, s] = [(i + 1) % 3, (i + 2) % 3];
-        let [c, d] = [(k + 1) % 3, (k + 2) % 3];
-        minor(r, s, c, d)
-    })
 }

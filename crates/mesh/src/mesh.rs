@@ -164,6 +164,15 @@ impl Mesh {
         &block.nodes[start..start + n]
     }
 
+    /// The mean of the nodes of an element, m.
+    pub fn middle(&self, id: ElementId) -> [f64; 3] {
+        let nodes = self.element_nodes(id);
+        [0, 1, 2].map(|i| {
+            let sum: f64 = nodes.iter().map(|&node| self.nodes[node as usize][i]).sum();
+            sum / nodes.len() as f64
+        })
+    }
+
     /// The kind of an element.
     pub fn kind(&self, id: ElementId) -> Kind {
         self.blocks[id.block as usize].kind

@@ -95,7 +95,7 @@ impl Surface {
                 if let Some(first) = faces[facet] {
                     return Err(Error::FacetOnTwoCells {
                         nodes: mesh.element_nodes(facets.elements[facet]).to_vec(),
-                        centre: centre(mesh, facets.elements[facet]),
+                        centre: mesh.middle(facets.elements[facet]),
                         cells: [first.parent, cell],
                     });
                 }
@@ -112,7 +112,7 @@ impl Surface {
         let faces = faces.map(|(face, &id)| {
             face.ok_or_else(|| Error::FacetOnNoCell {
                 nodes: mesh.element_nodes(id).to_vec(),
-                centre: centre(mesh, id),
+                centre: mesh.middle(id),
             })
         });
         Ok(Surface {
@@ -322,7 +322,7 @@ fn by_nodes(mesh: &Mesh, facets: &Group) -> Result<BTreeMap<[u32; MAX_FACE_NODES
         if map.insert(key(&face_nodes(nodes)), i).is_some() {
             return Err(Error::FacetTwice {
                 nodes: nodes.to_vec(),
-                centre: centre(mesh, id),
+                centre: mesh.middle(id),
             });
         }
     }
@@ -356,14 +356,6 @@ pub(crate) fn axis(mesh: &Mesh, cell: ElementId, face: usize) -> [f64; 3] {
     let along = [0, 1, 2].map(|i| mesh.nodes[end][i] - mesh.nodes[other][i]);
     let length = along.iter().map(|x| x * x).sum::<f64>().sqrt();
     along.map(|x| x / length)
-}
-
-fn centre(mesh: &Mesh, id: ElementId) -> [f64; 3] {
-    let nodes = mesh.element_nodes(id);
-    [0, 1, 2].map(|i| {
-        let sum: f64 = nodes.iter().map(|&node| mesh.nodes[node as usize][i]).sum();
-        sum / nodes.len() as f64
-    })
 }
 
 #[cfg(test)]

@@ -177,11 +177,7 @@ impl Driver {
             fitting,
             place: match (body, cell) {
                 (Some(body), Some(cell)) => {
-                    let nodes = system.mesh.element_nodes(cell);
-                    let places = nodes.iter().map(|&node| system.mesh.nodes[node as usize]);
-                    let [x, y, z] = places.fold([0.0; 3], |sum, place| {
-                        [0, 1, 2].map(|i| sum[i] + place[i] / nodes.len() as f64)
-                    });
+                    let [x, y, z] = system.mesh.middle(cell);
                     format!(
                         "cell {} of block {} in body '{}', whose middle was at ({x:.4e}, {y:.4e}, {z:.4e}) m",
                         cell.index,

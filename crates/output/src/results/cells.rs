@@ -168,10 +168,6 @@ pub(crate) fn deleted(system: &System, histories: &[f64]) -> Option<Vec<bool>> {
 /// Where the middle of a cell is in the reference configuration, m.
 pub(crate) fn middle(system: &System, cell: u32) -> Option<[f64; 3]> {
     let mut elements = system.bodies.iter().flat_map(|body| body.cells());
-    let nodes = system.mesh.element_nodes(*elements.nth(cell as usize)?);
-    let count = nodes.len() as f64;
-    Some(nodes.iter().fold([0.0; 3], |sum, node| {
-        let x = system.mesh.nodes[*node as usize];
-        [0, 1, 2].map(|i| sum[i] + x[i] / count)
-    }))
+    let element = elements.nth(cell as usize)?;
+    Some(system.mesh.middle(*element))
 }
