@@ -18,52 +18,17 @@ const STRIP: usize = 192;
 /// Rows of a piece of the triangular solves of large fronts.
 const PIECE: usize = 512;
 
-/// Numbers in the squares that a worker keeps.
-const KEPT: usize = 16_000_000;
-
 /// Operations from which on a front is cut into strips.
 const LARGE: f64 = 2e7;
 
-/// Memory of one worker. Its values do not matter.
-pub(super) struct Room {
-    /// Of the Cholesky factorisations of blocks on the diagonal.
-    scratch: MemBuffer,
-    /// Squares that nobody needs any more: the system would clear new pages for each.
-    free: Vec<Vec<f64>>,
-    /// Numbers in them.
-    kept: usize,
-}
+/// Scratch of the Cholesky factorisations of blocks on the diagonal.
+pub(super) struct Room(MemBuffer);
 
 impl Room {
     /// For fronts of up to `columns` columns. None without memory.
     pub fn new(columns: usize) -> Option<Room> {
         let request = cholesky_in_place_scratch::<f64>(columns, Par::Seq, Default::default());
-        Some(Room {
-            scratch: MemBuffer::try_new(request).ok()?,
-            free: Vec::new(),
-            kept: 0,
-        })
-    }
-
-    /// A vector of at least `length` numbers, of any value. None without memory.
-    pub fn take(&mut self, length: usize) -> Option<Vec<f64>> {
-        let fits = |vector: &Vec<f64>| (length..=2 * length).contains(&vector.len());
-        if let Some(k) = self.free.iter().rposition(fits) {
-            let vector = self.free.swap_remove(k);
-            self.kept -= vector.len();
-            return Some(vector);
-        }
-        Vec::<f64>::new().try_reserve_exact(length).ok()?;
-        // pages that nobody writes to, those of the upper triangle, are not there
-        Some(vec![0.0; length])
-    }
-
-    /// Keeps a vector for the next front, if it is not large.
-    pub fn give(&mut self, vector: Vec<f64>) {
-        if !vector.is_empty() && self.kept + vector.len() <= KEPT {
-            self.kept += vector.len();
-            self.free.push(vector);
-        }
+        MemBuffer::try_new(request).ok().map(Room)
     }
 }
 
@@ -145,7 +110,7 @@ fn factor_block(
         block,
         LltRegularization::default(),
         Par::Seq,
-        MemStack::new(&mut room.scratch),
+        MemStack::new(&mut room.0),
         Default::default(),
     )
     .map(|_| ())

@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::front::{self, Room};
+use super::squares::Squares;
 use super::sweep::{Panel, Panels};
 use crate::{Error, csr::Csr};
 
@@ -53,6 +54,7 @@ pub(super) struct Fronts {
     widest: usize,
     /// Of a tree that one thread takes whole, kept from one factorisation to the next.
     room: Option<Room>,
+    squares: Mutex<Squares>,
 }
 
 impl Fronts {
@@ -69,6 +71,7 @@ impl Fronts {
             starts: Vec::with_capacity(connected.len() + 1),
             widest: panels.list.iter().map(|p| p.columns).max().unwrap_or(0),
             room: None,
+            squares: Mutex::new(Squares::new(0)),
         };
         let mut operations: Vec<f64> = panels.list.iter().map(Panel::operations).collect();
         for s in 0..count {
@@ -80,10 +83,23 @@ impl Fronts {
                 operations[parent] += operations[s];
             }
         }
+        fronts.squares = Mutex::new(Squares::new(fronts.most_in_use(panels)));
         fronts.cut(&operations);
         fronts.find_rows(panels);
         fronts.find_entries(panels, matrix, connected, position);
         fronts
+    }
+
+    /// Numbers that fronts leave to parents, the most that are there at once where they come one after the other.
+    fn most_in_use(&self, panels: &Panels) -> usize {
+        let square = |s: u32| panels.list[s as usize].below.pow(2);
+        let (mut now, mut most) = (0, 0);
+        for s in 0..self.parent.len() as u32 {
+            now += square(s);
+            most = most.max(now);
+            now -= self.children_of(s).into_iter().map(square).sum::<usize>();
+        }
+        most
     }
 
     /// Cuts the tree into pieces of work.
@@ -157,14 +173,20 @@ impl Fronts {
             connected,
         };
         let small = job.fronts.pieces.len() <= 1;
-        if !small && rayon::current_num_threads() > 1 {
-            return job.share(values);
+        if small || rayon::current_num_threads() == 1 {
+            let Some(mut room) = kept.or_else(|| Room::new(job.fronts.widest)) else {
+                return Err(Failure::Memory);
+            };
+            let done = job.subtrees(values, &mut room);
+            if small {
+                self.room = Some(room);
+                return done;
+            }
+            lock(&self.squares).clear();
+            return done;
         }
-        let Some(mut room) = kept.or_else(|| Room::new(job.fronts.widest)) else {
-            return Err(Failure::Memory);
-        };
-        let done = job.subtrees(values, &mut room);
-        self.room = small.then_some(room);
+        let done = job.share(values);
+        lock(&self.squares).clear();
         done
     }
 }
@@ -309,7 +331,8 @@ impl Job<'_> {
     ) -> Rest {
         let panel = &self.panels.list[s as usize];
         self.entries(panel, own)?;
-        let Some(mut rest) = room.take(panel.below * panel.below) else {
+        let taken = lock(&self.fronts.squares).take(panel.below.pow(2));
+        let Some(mut rest) = taken else {
             return Err(Failure::Memory);
         };
         let mut lefts = Vec::new();
@@ -324,7 +347,7 @@ impl Job<'_> {
             .map_err(|column| Failure::Pivot(panel.begin + column))?;
         for (child, left, inner) in lefts {
             self.extend_rest((child, inner), &left, panel, &mut rest);
-            room.give(left);
+            lock(&self.fronts.squares).give(left);
         }
         Ok(rest)
     }

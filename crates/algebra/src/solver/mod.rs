@@ -12,6 +12,7 @@ mod panel;
 mod quasi_definite;
 mod response;
 mod saddle;
+mod squares;
 mod supernodal;
 mod sweep;
 
