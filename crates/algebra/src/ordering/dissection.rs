@@ -18,23 +18,34 @@ const LEAST: usize = 4;
 /// The least part of a set on either side of a separator.
 const LEAST_PART: f64 = 0.2;
 
-/// An elimination order of the groups of a graph. `places`: of each group.
-pub(super) fn by_planes(graph: &Graph, places: &[[f64; 3]]) -> Vec<u32> {
+/// Sets with at least this part of all groups are large.
+const LARGE_PART: f64 = 0.125;
+
+/// An elimination order of the groups of a graph, and the largest roughness of a separator of a large set. `places`: of each group.
+///
+/// Roughness: mean distance along the cut axis of the groups of a separator from their mean, over the mean distance from their neighbours on
+/// either side.
+pub(super) fn by_planes(graph: &Graph, places: &[[f64; 3]]) -> (Vec<u32>, f64) {
     let n = graph.len();
     let mut dissection = Dissection::new(graph, places);
     // each set is a run of the order: first one part, then the other, then what separates them
     let mut order: Vec<u32> = (0..n as u32).collect();
     let mut open = vec![0..n];
+    let mut roughness = 0.0_f64;
     while let Some(range) = open.pop() {
         let first = range.start;
-        if range.len() > LEAST
-            && let Some([below, above]) = dissection.divide(first, &mut order[range])
+        let groups = &mut order[range];
+        if groups.len() > LEAST
+            && let Some([axis, below, above]) = dissection.divide(first, groups)
         {
+            if groups.len() as f64 >= LARGE_PART * n as f64 {
+                roughness = roughness.max(dissection.roughness(axis, &groups[below + above..]));
+            }
             open.push(first..first + below);
             open.push(first + below..first + below + above);
         }
     }
-    order
+    (order, roughness)
 }
 
 /// Between two groups of a sorted set. The groups before it that have neighbours after it are the separator, or those after it that have
@@ -69,8 +80,9 @@ impl<'a> Dissection<'a> {
         }
     }
 
-    /// Sorts the groups of a set into two parts and their separator. How many there are in the parts; none where no cut leaves two.
-    fn divide(&mut self, first: usize, groups: &mut [u32]) -> Option<[usize; 2]> {
+    /// Sorts the groups of a set into two parts and their separator. The axis across which it was cut, and how many there are in the parts; none
+    /// where no cut leaves two.
+    fn divide(&mut self, first: usize, groups: &mut [u32]) -> Option<[usize; 3]> {
         let axis = self.longest(groups);
         let along = |&g: &u32| self.places[g as usize][axis];
         groups.sort_unstable_by(|a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
@@ -94,7 +106,27 @@ impl<'a> Dissection<'a> {
             self.set[g as usize] = ROOT;
         }
         groups.copy_from_slice(&parts.concat());
-        Some([below, above])
+        Some([axis, below, above])
+    }
+
+    fn roughness(&self, axis: usize, separator: &[u32]) -> f64 {
+        let along = |g: u32| self.places[g as usize][axis];
+        let count = separator.len().max(1) as f64;
+        let mean = separator.iter().map(|&g| along(g)).sum::<f64>() / count;
+        let apart: f64 = separator.iter().map(|&g| (along(g) - mean).abs()).sum();
+        let (mut steps, mut neighbours) = (0.0, 0.0);
+        for &g in separator {
+            for &h in self.graph.neighbours(g as usize) {
+                if self.set[h as usize] != ROOT {
+                    steps += (along(g) - along(h)).abs();
+                    neighbours += 1.0;
+                }
+            }
+        }
+        match steps > 0.0 {
+            true => apart / count * neighbours / steps,
+            false => 0.0,
+        }
     }
 
     /// The axis along which a set is longest.
@@ -231,7 +263,7 @@ mod tests {
         let mut divided = 0;
         while let Some(range) = open.pop() {
             let groups = &mut order[range.clone()];
-            let Some([low, high]) = dissection.divide(range.start, groups) else {
+            let Some([_, low, high]) = dissection.divide(range.start, groups) else {
                 continue;
             };
             divided += 1;
@@ -257,9 +289,8 @@ mod tests {
         let (graph, places) = scattered();
         let mut dissection = Dissection::new(&graph, &places);
         let mut order: Vec<u32> = (0..graph.len() as u32).collect();
-        let parts = dissection.divide(0, &mut order).unwrap();
+        let [_, low, high] = dissection.divide(0, &mut order).unwrap();
         let weight = |g: &u32| dissection.weight(*g);
-        let [low, high] = parts;
         let all: i64 = order.iter().map(weight).sum();
         let below: i64 = order[..low].iter().map(weight).sum();
         let above: i64 = order[low..low + high].iter().map(weight).sum();

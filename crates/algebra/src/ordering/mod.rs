@@ -8,19 +8,20 @@
 //! 3. The groups are expanded and the elimination tree is postordered, so that columns of equal pattern become neighbours.
 //!
 //! Planes follow the layers of nodes of a mesh along the axes, and are then better than the graph alone, in a tenth of the
-//! time; across the layers of a mesh that lies askew they are worse than minimum degree. Operations over those of minimum
-//! degree, and seconds of both dissections, on meshes whose nodes are moved by up to 0.15 of an edge:
+//! time. Elsewhere they are worse, sometimes worse than minimum degree. Their separators tell which: in layers they are flat
+//! (roughness of [`dissection::by_planes`]). Operations over those of minimum degree:
 //!
-//! | | planes | graph alone | seconds |
+//! | nodes moved by up to 0.15 of an edge | planes | graph alone | roughness |
 //! |---|---|---|---|
-//! | 24³ hexahedra | 0.29 | 0.33 | 0.015, 0.17 |
-//! | 48³ hexahedra | 0.21 | 0.25 | 0.2, 7 |
-//! | 24³ hexahedra, turned | 1.4 | 0.33 | |
-//! | 24³ cubes of tetrahedra | 0.44 | 0.49 | 0.015, 0.12 |
-//! | 32³ cubes of tetrahedra, turned | 0.91 | 0.43 | 0.04, 0.33 |
-//! | 48³ cubes of tetrahedra, turned | 0.81 | 0.35 | |
+//! | 24³ hexahedra | 0.29 | 0.33 | 0.08 |
+//! | 48³ hexahedra, not moved | 0.21 | 0.25 | 0 |
+//! | 24³ cubes of tetrahedra | 0.44 | 0.49 | 0.08 |
+//! | 24³ hexahedra, turned by 6° about two axes | 0.39 | 0.33 | 0.31 |
+//! | 24³ hexahedra, turned by 40° | 1.43 | 0.33 | 0.43 |
+//! | 24³ cubes of tetrahedra, turned by 40° | 1.02 | 0.49 | 0.42 |
+//! | tetrahedra of 36 000 scattered nodes (Delaunay) | 0.45 | 0.31 | 0.60 |
 //!
-//! So the graph alone is not dissected where planes take half of the operations of minimum degree away.
+//! So the graph alone is not dissected where planes have flat separators and beat minimum degree.
 //!
 //! The dissection of the graph comes from a young library: what it returns is checked, and minimum degree stands behind it.
 
@@ -39,8 +40,9 @@ const DISSECTION_UNKNOWNS: usize = 8000;
 /// problems, where dissecting would take longer than it saves.
 const DISSECTION_INTENSITY: f64 = 200.0;
 
-/// Part of the operations of minimum degree up to which planes are the best that there is: see the table above.
-const PLANES_SUFFICE: f64 = 0.5;
+/// Roughness of separators below which planes follow layers of nodes: 0 where nodes of a layer lie in a plane, 0.08 where they are moved by up to
+/// 0.15 of an edge, 0.25 and more where planes cross the layers, or where there are none.
+const FLAT: f64 = 0.15;
 
 /// Place of an unknown, that of its node.
 pub type Place<'a> = dyn Fn(usize) -> [f64; 3] + 'a;
@@ -207,26 +209,23 @@ impl Graph {
     ) -> Result<(&'static str, Vec<u32>, Work), Error> {
         let degree = self.minimum_degree(unknowns)?;
         let work = self.work(&degree);
-        let operations = work.operations;
-        let dissect = operations > DISSECTION_INTENSITY * work.entries;
         let mut best = ("minimum degree", degree, work);
-        let mut compare = |name, order: Vec<u32>| {
-            let work = self.work(&order);
+        if best.2.operations < DISSECTION_INTENSITY * best.2.entries {
+            return Ok(best);
+        }
+        let mut suffices = unknowns < DISSECTION_UNKNOWNS;
+        if let Some(places) = places {
+            let (planes, roughness) = dissection::by_planes(self, places);
+            let work = self.work(&planes);
             if work.operations < best.2.operations {
-                best = (name, order, work);
+                suffices |= roughness < FLAT;
+                best = ("nested dissection by planes", planes, work);
             }
-            best.2.operations
-        };
-        if dissect {
-            let least = places.map_or(operations, |places| {
-                let order = dissection::by_planes(self, places);
-                compare("nested dissection by planes", order)
-            });
-            if unknowns >= DISSECTION_UNKNOWNS
-                && least > PLANES_SUFFICE * operations
-                && let Some(order) = self.nested_dissection()
-            {
-                compare("nested dissection", order);
+        }
+        if !suffices && let Some(dissection) = self.nested_dissection() {
+            let work = self.work(&dissection);
+            if work.operations < best.2.operations {
+                best = ("nested dissection", dissection, work);
             }
         }
         Ok(best)

@@ -167,12 +167,12 @@ fn a_dissection_by_planes_of_a_cube_takes_half_of_the_operations_of_minimum_degr
     let (matrix, nodes) = grid(cells, 3);
     let graph = graph(&matrix, &nodes);
     let degree = graph.minimum_degree(matrix.n).unwrap();
-    let planes = dissection::by_planes(&graph, &places(cells, 0.0, 0.0));
+    let (planes, _) = dissection::by_planes(&graph, &places(cells, 0.0, 0.0));
     assert!(is_permutation(&planes) && planes.len() == graph.len());
     let least = 0.5 * graph.work(&degree).operations;
     assert!(graph.work(&planes).operations <= least);
     // moved nodes stay in their layers
-    let planes = dissection::by_planes(&graph, &places(cells, 0.15, 0.0));
+    let (planes, _) = dissection::by_planes(&graph, &places(cells, 0.15, 0.0));
     assert!(graph.work(&planes).operations <= least);
 }
 
@@ -181,15 +181,37 @@ fn places_never_make_an_order_worse() {
     let cells = [15, 14, 13];
     for (matrix, nodes) in [grid(cells, 3), tetrahedra(cells)] {
         let before = Ordering::new(&matrix, &nodes, None).unwrap().work()[1];
-        for (part, turn) in [(0.0, 0.0), (0.15, 0.0), (0.0, 0.7), (0.15, 0.7)] {
+        for (part, turn) in [
+            (0.0, 0.0),
+            (0.15, 0.0),
+            (0.15, 0.1),
+            (0.0, 0.7),
+            (0.15, 0.7),
+        ] {
             let places = places(cells, part, turn);
             let place = |unknown: usize| places[nodes[unknown] as usize];
             let order = Ordering::new(&matrix, &nodes, Some(&place)).unwrap();
             assert!(is_permutation(&order.permutation));
             assert!(order.work()[1] <= before);
-            let planes = turn == 0.0;
-            assert_eq!(order.name == "nested dissection by planes", planes);
+            if turn == 0.0 {
+                assert_eq!(order.name, "nested dissection by planes");
+            }
         }
+    }
+}
+
+#[test]
+fn separators_of_layers_are_flat_and_others_are_not() {
+    let cells = [15, 14, 13];
+    for (matrix, nodes) in [grid(cells, 3), tetrahedra(cells)] {
+        let graph = graph(&matrix, &nodes);
+        let roughness = |part, turn| dissection::by_planes(&graph, &places(cells, part, turn)).1;
+        assert_eq!(roughness(0.0, 0.0), 0.0);
+        // a number from -0.15 to 0.15 is 0.075 on the mean, of a step of one
+        let moved = roughness(0.15, 0.0);
+        assert!((0.06..0.09).contains(&moved), "{moved}");
+        assert!(roughness(0.0, 0.7) > 2.0 * FLAT);
+        assert!(roughness(0.15, 0.1) > FLAT);
     }
 }
 
@@ -199,6 +221,6 @@ fn places_that_tell_nothing_do_no_harm() {
     let graph = graph(&matrix, &nodes);
     for x in [0.0, f64::NAN, f64::INFINITY] {
         let places = vec![[x; 3]; graph.len()];
-        assert!(is_permutation(&dissection::by_planes(&graph, &places)));
+        assert!(is_permutation(&dissection::by_planes(&graph, &places).0));
     }
 }
