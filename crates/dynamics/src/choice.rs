@@ -62,17 +62,17 @@ pub(crate) fn operator(
 ) -> Result<Operator, AlgebraError> {
     let matrix = matrix.with_identity(fixed);
     let groups = groups(nodes);
+    let place = |unknown: usize| system.x[nodes[unknown] as usize];
     let asked = system.nonlinear.iteration.solver;
     let few = matrix.n < FEW || !of.inertia;
     if asked == Solver::Direct || asked == Solver::Auto && (few || system.needs_factor().is_some())
     {
-        return factor(&matrix, Ordering::new(&matrix, &groups)?);
+        return factor(&matrix, Ordering::new(&matrix, &groups, Some(&place))?);
     }
     let order = match asked {
-        Solver::Auto => Some(Ordering::new(&matrix, &groups)?),
+        Solver::Auto => Some(Ordering::new(&matrix, &groups, Some(&place))?),
         Solver::Direct | Solver::Iterative => None,
     };
-    let place = |unknown: usize| system.x[nodes[unknown] as usize];
     let mut solver = Iterative::new(matrix, &groups)?;
     match order {
         Some(order) if !pays(&mut solver, (system, of), order.work()) => {

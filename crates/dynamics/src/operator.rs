@@ -5,7 +5,7 @@ use std::ops::Range;
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
-use carom_algebra::solver::{Cholesky, FactorStats, Response, SparseRow, gram};
+use carom_algebra::solver::{Cholesky, FactorStats, Ordering, Response, SparseRow, gram};
 
 use crate::error::{Error, MeshNode};
 use crate::iterated::Iterated;
@@ -464,8 +464,11 @@ pub(crate) fn factored(
     matrix: &'static str,
 ) -> Result<Operator, Error> {
     let nodes = &system.unknowns.node_of_each()[part.clone()];
-    let factor = Cholesky::new(&a.with_identity(held), &groups(nodes));
-    let factor = factor.map_err(|cause| unsolvable(system, part, (matrix, cause)))?;
+    let place = |unknown: usize| system.x[nodes[unknown] as usize];
+    let free = a.with_identity(held);
+    let factor = Ordering::new(&free, &groups(nodes), Some(&place))
+        .and_then(|order| Cholesky::ordered(&free, order))
+        .map_err(|cause| unsolvable(system, part, (matrix, cause)))?;
     Ok(Operator::Factored(Box::new(factor)))
 }
 

@@ -26,7 +26,7 @@ pub struct FactorStats {
     pub flops: f64,
     /// Bytes held by the factor, its indices and its scratch.
     pub bytes: usize,
-    /// Method that gave the order of elimination: `minimum degree` or `nested dissection`.
+    /// Method that gave the order of elimination: `minimum degree`, `nested dissection` or `nested dissection by planes`.
     pub ordering: String,
     /// Factorisations computed so far.
     pub factorisations: usize,
@@ -70,7 +70,7 @@ impl Cholesky {
                 found: group_of.len(),
             });
         }
-        Self::ordered(matrix, Ordering::new(matrix, group_of)?)
+        Self::ordered(matrix, Ordering::new(matrix, group_of, None)?)
     }
 
     /// Factorises `matrix` in an order that was chosen for its pattern. Errors are those of [`Cholesky::new`].

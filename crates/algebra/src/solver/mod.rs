@@ -16,7 +16,7 @@ mod squares;
 mod supernodal;
 mod sweep;
 
-pub use crate::ordering::Ordering;
+pub use crate::ordering::{Ordering, Place};
 pub use cholesky::{Cholesky, FactorStats};
 pub use iterative::Iterative;
 pub use quasi_definite::QuasiDefinite;

@@ -61,7 +61,7 @@ impl QuasiDefinite {
     }
 
     fn of(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
-        let order = Ordering::new(matrix, group_of)?;
+        let order = Ordering::new(matrix, group_of, None)?;
         let (connected, permutation) = (order.connected, order.permutation);
         let position = ordering::inverse(matrix.n, &permutation);
         let symbolic = analyse(matrix, &permutation[..connected], &position)?;

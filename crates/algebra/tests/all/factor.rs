@@ -49,7 +49,7 @@ fn solutions_equal_those_of_the_dense_factor() {
 
 #[test]
 fn the_residual_of_a_block_is_rounding() {
-    // 14 739 unknowns: nested dissection is tried, and wins.
+    // 14 739 unknowns: nested dissection of the graph is tried, and wins.
     let system = block(16, 0.5);
     let mut solver = factor(&system);
     assert_eq!(solver.stats().ordering, "nested dissection");
