@@ -23,8 +23,9 @@ pub(crate) const FILM: usize = 5;
 /// Most bytes of the instants at equal times, of a model so large that [`PARTS`] allows fewer.
 const BYTES: usize = 64 << 20;
 
-/// Explicit steps to an instant at least: an instant costs twenty, so that all cost less than a tenth of the run.
-const STEPS: f64 = 250.0;
+/// Explicit and implicit steps to an instant at least: an instant costs twenty of the former and a quarter of the latter, so that all cost
+/// less than a tenth of the run.
+const STEPS: [f64; 2] = [250.0, 2.5];
 
 /// Growth of the force from one copy to the next: the state of the largest force is that of one 2 % below it at the least.
 pub(crate) const GROWTH: f64 = 1.02;
@@ -90,10 +91,8 @@ impl Stills {
         let by_memory = BYTES / bytes.max(1) / FILM;
         let begin = dynamics_begin(system, end);
         let is_explicit = system.schemes.iter().all(|s| s.get().is_explicit());
-        let by_steps = match is_explicit {
-            true => ((end - begin) / system.dt / STEPS) as usize / FILM,
-            false => PARTS[1],
-        };
+        let steps = if is_explicit { STEPS[0] } else { STEPS[1] };
+        let by_steps = ((end - begin) / system.dt / steps) as usize / FILM;
         let parts = by_memory.min(by_steps).clamp(PARTS[0], PARTS[1]);
         Stills {
             seen,
