@@ -337,25 +337,25 @@ impl Solid {
         matrix: &mut Csr,
     ) {
         let dim = self.dim;
+        let (mut rows, mut block) = (Vec::new(), Vec::new());
         self.each_matrix(true, &mut |element| {
             let (first, k, m) = (element.first, element.stiffness, element.mass);
             let n = first.len();
             if !part.contains(&(first[0] as usize)) {
                 return;
             }
-            for row in 0..dim * n {
-                let (a, i) = (row / dim, row % dim);
-                let dof = first[a] as usize + i;
-                for column in 0..dim * n {
-                    let (b, j) = (column / dim, column % dim);
-                    let other = first[b] as usize + j;
-                    let mut value = stiffness_factor * k[row * dim * n + column];
-                    if i == j {
-                        value += mass_factor * m[a * n + b];
+            rows.clear();
+            rows.extend(first.iter().map(|&row| row - part.start as u32));
+            block.clear();
+            block.extend(k.iter().map(|k| stiffness_factor * k));
+            for (a, masses) in m.chunks_exact(n).enumerate() {
+                for (b, mass) in masses.iter().enumerate() {
+                    for i in 0..dim {
+                        block[(dim * a + i) * dim * n + dim * b + i] += mass_factor * mass;
                     }
-                    matrix.add(dof - part.start, other - part.start, value);
                 }
             }
+            matrix.add_nodes(&rows, dim, (1.0, &block));
         });
     }
 
