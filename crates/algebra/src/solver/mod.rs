@@ -7,6 +7,7 @@
 mod cholesky;
 mod front;
 mod fronts;
+mod gram;
 mod iterative;
 mod panel;
 mod quasi_definite;
@@ -18,9 +19,10 @@ mod sweep;
 
 pub use crate::ordering::{Ordering, Place};
 pub use cholesky::{Cholesky, FactorStats};
+pub use gram::gram;
 pub use iterative::Iterative;
 pub use quasi_definite::QuasiDefinite;
-pub use response::{Response, SparseRow, gram};
+pub use response::{Response, SparseRow};
 pub use saddle::Saddle;
 
 pub(crate) use panel::{backward, forward};

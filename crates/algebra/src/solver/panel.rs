@@ -24,27 +24,30 @@ fn multiply_add<S: Simd>(a: f64, b: f64, c: f64) -> f64 {
     }
 }
 
-/// Dot product, in the lanes of two registers.
+/// Adds to the lanes of the dot product of x with each of the `y`, all of one length. The bits of a product do not depend on the others.
 #[inline(always)]
-pub(crate) fn dot<S: Simd>(simd: S, x: &[f64], y: &[f64]) -> f64 {
+pub(crate) fn add_dots<S: Simd, const B: usize>(
+    simd: S,
+    x: &[f64],
+    y: [&[f64]; B],
+    sums: &mut [S::f64s; B],
+) {
     let (xs, x_tail) = S::as_simd_f64s(x);
-    let (ys, y_tail) = S::as_simd_f64s(y);
-    let (x_pairs, x_last) = xs.as_chunks::<2>();
-    let (y_pairs, y_last) = ys.as_chunks::<2>();
-    let mut sums = [simd.splat_f64s(0.0); 2];
-    for (a, b) in x_pairs.iter().zip(y_pairs) {
-        for k in 0..2 {
-            sums[k] = simd.mul_add_e_f64s(a[k], b[k], sums[k]);
+    let wide: [&[S::f64s]; B] = from_fn(|b| &S::as_simd_f64s(y[b]).0[..xs.len()]);
+    let mut own = *sums;
+    for i in 0..xs.len() {
+        for b in 0..B {
+            own[b] = simd.mul_add_e_f64s(wide[b][i], xs[i], own[b]);
         }
     }
-    for (a, b) in x_last.iter().zip(y_last) {
-        sums[0] = simd.mul_add_e_f64s(*a, *b, sums[0]);
+    if !x_tail.is_empty() {
+        let last = simd.partial_load_f64s(x_tail);
+        for b in 0..B {
+            let tail = simd.partial_load_f64s(S::as_simd_f64s(y[b]).1);
+            own[b] = simd.mul_add_e_f64s(tail, last, own[b]);
+        }
     }
-    let (a, b) = (
-        simd.partial_load_f64s(x_tail),
-        simd.partial_load_f64s(y_tail),
-    );
-    simd.reduce_sum_f64s(simd.mul_add_e_f64s(a, b, simd.add_f64s(sums[0], sums[1])))
+    *sums = own;
 }
 
 /// y += alpha x.
@@ -206,22 +209,12 @@ fn backward_block<S: Simd, const B: usize>(
     }
 }
 
-/// Dot products of `x` with several columns, each in the lanes of one register.
+/// Dot products of `x` with several columns.
 #[inline(always)]
 fn dots<S: Simd, const B: usize>(simd: S, columns: &[&[f64]; B], x: &[f64]) -> [f64; B] {
-    let (xs, x_tail) = S::as_simd_f64s(x);
-    let wide: [&[S::f64s]; B] = from_fn(|b| &S::as_simd_f64s(columns[b]).0[..xs.len()]);
     let mut sums = [simd.splat_f64s(0.0); B];
-    for i in 0..xs.len() {
-        for b in 0..B {
-            sums[b] = simd.mul_add_e_f64s(wide[b][i], xs[i], sums[b]);
-        }
-    }
-    let last = simd.partial_load_f64s(x_tail);
-    from_fn(|b| {
-        let tail = simd.partial_load_f64s(S::as_simd_f64s(columns[b]).1);
-        simd.reduce_sum_f64s(simd.mul_add_e_f64s(tail, last, sums[b]))
-    })
+    add_dots(simd, x, *columns, &mut sums);
+    sums.map(|sum| simd.reduce_sum_f64s(sum))
 }
 
 /// Columns j .. j + B of a panel, each from row j + B on.

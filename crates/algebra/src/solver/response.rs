@@ -3,13 +3,10 @@
 //! A column is zero outside the elimination-tree paths of its row, so it is kept as dense segments. Its bits depend on the factor
 //! and on its own row alone, never on the rows that were computed with it.
 
+use super::gram::Dot;
 use super::panel;
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 use std::ops::Range;
-
-/// Responses of one tile of [`gram`]: two tiles of long columns fit in a second-level cache.
-const TILE: usize = 6;
 
 /// One row of a matrix N: coefficients of some unknowns, zero for the others.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,25 +20,20 @@ pub struct SparseRow {
 /// One column of Y = L⁻¹ P Nᵀ, in the factor's own order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Response {
-    /// Positions outside which the column is zero: ascending, disjoint, never touching.
-    segments: Vec<Range<usize>>,
+    /// Positions outside which the column is zero: ascending, disjoint, those of each panel of the factor apart. What two columns have in
+    /// common are whole segments of both.
+    pub(super) segments: Vec<Range<usize>>,
     /// Values, segment after segment.
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
 }
 
 impl Response {
-    /// Column with values at the positions of `ranges` (ascending, disjoint; touching ones are joined).
+    /// Column with values at the positions of `ranges`: ascending, disjoint.
     pub(super) fn collect(
         ranges: impl Iterator<Item = Range<usize>>,
         value: impl Fn(usize) -> f64,
     ) -> Self {
-        let mut segments: Vec<Range<usize>> = vec![];
-        for range in ranges {
-            match segments.last_mut() {
-                Some(last) if last.end == range.start => last.end = range.end,
-                _ => segments.push(range),
-            }
-        }
+        let segments: Vec<Range<usize>> = ranges.collect();
         let mut values = Vec::with_capacity(segments.iter().map(Range::len).sum());
         values.extend(segments.iter().cloned().flatten().map(value));
         Self { segments, values }
@@ -77,63 +69,6 @@ impl Response {
     }
 }
 
-/// W = Yᵀ Y, row-major, `responses.len()` squared entries; each has the bits of [`Response::dot`].
-pub fn gram(responses: &[&Response]) -> Vec<f64> {
-    let n = responses.len();
-    let mut w = vec![0.0; n * n];
-    w.par_chunks_mut((TILE * n).max(1))
-        .enumerate()
-        .for_each(|(tile, w)| {
-            let begin = tile * TILE;
-            let rows = w.len() / n;
-            for first in (0..begin + rows).step_by(TILE) {
-                for i in 0..rows {
-                    for j in first..(first + TILE).min(begin + i + 1) {
-                        w[i * n + j] = responses[begin + i].dot(responses[j]);
-                    }
-                }
-            }
-        });
-    for i in 0..n {
-        for j in 0..i {
-            w[j * n + i] = w[i * n + j];
-        }
-    }
-    w
-}
-
-struct Dot<'a>(&'a Response, &'a Response);
-
-impl WithSimd for Dot<'_> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let (mut xs, mut ys) = (self.0.pieces(), self.1.pieces());
-        let (mut x, mut y) = (xs.next(), ys.next());
-        let mut sum = 0.0;
-        while let (Some((p, a)), Some((q, b))) = (&x, &y) {
-            let (begin, end) = (p.start.max(q.start), p.end.min(q.end));
-            if begin < end {
-                sum += panel::dot(
-                    simd,
-                    &a[begin - p.start..end - p.start],
-                    &b[begin - q.start..end - q.start],
-                );
-            }
-            // Both advance where both end: no entry is left in either.
-            let (p_end, q_end) = (p.end, q.end);
-            if p_end <= q_end {
-                x = xs.next();
-            }
-            if q_end <= p_end {
-                y = ys.next();
-            }
-        }
-        sum
-    }
-}
-
 struct DotDense<'a>(&'a Response, &'a [f64]);
 
 impl WithSimd for DotDense<'_> {
@@ -141,11 +76,11 @@ impl WithSimd for DotDense<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let mut sum = 0.0;
+        let mut sums = [simd.splat_f64s(0.0)];
         for (range, values) in self.0.pieces() {
-            sum += panel::dot(simd, values, &self.1[range]);
+            panel::add_dots(simd, values, [&self.1[range]], &mut sums);
         }
-        sum
+        simd.reduce_sum_f64s(sums[0])
     }
 }
 
