@@ -11,6 +11,7 @@
 //! Sorting takes O(n log² n), everything else O(n log n).
 
 use super::{Graph, ROOT};
+use std::ops::Range;
 
 /// Sets of at most so many groups are not divided.
 const LEAST: usize = 4;
@@ -30,7 +31,7 @@ pub(super) fn by_planes(graph: &Graph, places: &[[f64; 3]]) -> (Vec<u32>, f64) {
     let mut dissection = Dissection::new(graph, places);
     // each set is a run of the order: first one part, then the other, then what separates them
     let mut order: Vec<u32> = (0..n as u32).collect();
-    let mut open = vec![0..n];
+    let mut open: Vec<Range<usize>> = std::iter::once(0..n).collect();
     let mut roughness = 0.0_f64;
     while let Some(range) = open.pop() {
         let first = range.start;
@@ -125,7 +126,9 @@ impl<'a> Dissection<'a> {
         }
         match steps > 0.0 {
             true => apart / count * neighbours / steps,
-            false => 0.0,
+            false if separator.is_empty() => 0.0,
+            // all at one place
+            false => f64::INFINITY,
         }
     }
 
@@ -259,7 +262,7 @@ mod tests {
         let (graph, places) = scattered();
         let mut dissection = Dissection::new(&graph, &places);
         let mut order: Vec<u32> = (0..graph.len() as u32).collect();
-        let mut open = vec![0..graph.len()];
+        let mut open: Vec<Range<usize>> = std::iter::once(0..graph.len()).collect();
         let mut divided = 0;
         while let Some(range) = open.pop() {
             let groups = &mut order[range.clone()];
