@@ -126,7 +126,9 @@ impl<'a> Dissection<'a> {
         }
         match steps > 0.0 {
             true => apart / count * neighbours / steps,
-            false => 0.0,
+            false if separator.is_empty() => 0.0,
+            // all at one place
+            false => f64::INFINITY,
         }
     }
 
