@@ -226,7 +226,10 @@ impl Csr {
     /// Copy in which the rows and columns of the unknowns marked `fixed` hold 1 on the diagonal and nothing else, not even
     /// a stored zero: a factorisation then spends nothing on them.
     pub fn with_identity(&self, fixed: &[bool]) -> Self {
-        self.part(std::slice::from_ref(&(0..self.n)), |i| fixed[i])
+        match fixed.contains(&true) {
+            true => self.part(std::slice::from_ref(&(0..self.n)), |i| fixed[i]),
+            false => self.clone(),
+        }
     }
 
     /// The rows and columns of the unknowns in `ranges`, numbered one range after the other; entries in other columns are left out.

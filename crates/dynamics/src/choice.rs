@@ -26,9 +26,9 @@ const MOST_BYTES: f64 = 8e9;
 /// same solver.
 const STEPS: f64 = 100.0;
 
-/// What the column of a contact point and its entries of D cost, in pairs of sweeps over the whole factor: 0.06 were measured for a block of 48³
-/// elements on its face.
-const COLUMN: f64 = 0.06;
+/// What the column of a contact point and its entries of D cost, in pairs of sweeps over the whole factor: 0.018 were measured for a block of
+/// 48³ elements on its face, 0.026 for one of 24³.
+const COLUMN: f64 = 0.02;
 
 /// Solves of a step: without contact forces, and with them.
 const SOLVES: f64 = 2.0;
@@ -120,14 +120,16 @@ fn pays(
     let direct = operations / OPERATIONS_PER_BYTE + sweeps * 8.0 * entries;
     let n = solver.unknowns();
     let iteration = 12.0 * solver.matrix().nnz() as f64 + 96.0 * n as f64;
-    let iterations = iterations(solver, TOLERANCE);
-    let iterative = iterations.map_or(f64::INFINITY, |count| solves * count as f64 * iteration);
-    let pays = iterative < direct || 8.0 * entries > MOST_BYTES && iterative.is_finite();
+    // more of them than would cost as much as a factor are not counted
+    let most = match 8.0 * entries > MOST_BYTES {
+        true => usize::MAX,
+        false => (direct / (solves * iteration)) as usize,
+    };
+    let iterations = iterations(solver, (TOLERANCE, most));
     tracing::debug!(
-        "{n} unknowns: a factor would cost as much as reading {direct:.1e} bytes, iterations {iterative:.1e}: {}",
-        if pays { "iterations" } else { "a factor" },
+        "{n} unknowns: a factor would cost as much as reading {direct:.1e} bytes, or {most} iterations; iterations: {iterations:?}",
     );
-    pays
+    iterations.is_some()
 }
 
 /// Contact points on a part that close within the steps which its matrix is taken to serve, if all moves on as it does at first. A point that
@@ -152,8 +154,8 @@ fn closing(system: &System, part: &Range<usize>) -> usize {
     (0..rows.len()).filter(closes).filter(inside).count()
 }
 
-/// Iterations of a solve with some load; none if they do not end.
-fn iterations(solver: &mut Iterative, tolerance: f64) -> Option<usize> {
+/// Iterations of a solve with some load up to a tolerance; none if they do not end or are more than `most`.
+fn iterations(solver: &mut Iterative, (tolerance, most): (f64, usize)) -> Option<usize> {
     // a fixed load with all wave lengths: numbers of a linear congruence
     let next = |state: u64| {
         state
@@ -167,5 +169,5 @@ fn iterations(solver: &mut Iterative, tolerance: f64) -> Option<usize> {
         .map(|state: u64| (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5)
         .collect();
     let mut x = vec![0.0; n];
-    solver.solve(&load, &mut x, tolerance).ok()
+    solver.solve_within(&load, &mut x, (tolerance, most)).ok()
 }

@@ -241,6 +241,19 @@ impl Iterative {
     /// # Errors
     /// A direction along which the matrix is not positive; iterations that do not end.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> Result<usize, Error> {
+        self.solve_within(b, x, (tolerance, usize::MAX))
+    }
+
+    /// As [`Iterative::solve`], in `most` iterations.
+    ///
+    /// # Errors
+    /// Those of [`Iterative::solve`], and more iterations.
+    pub fn solve_within(
+        &mut self,
+        b: &[f64],
+        x: &mut [f64],
+        (tolerance, most): (f64, usize),
+    ) -> Result<usize, Error> {
         if let Some(engine) = &mut self.engine {
             let solved = engine.solve(b, x, tolerance);
             let iterations = *solved.as_ref().unwrap_or_else(|failed| &failed.iterations);
@@ -263,7 +276,7 @@ impl Iterative {
         let first = dot(&residual, &preconditioned);
         let mut descent = Descent::new(first, tolerance);
         let mut now = first;
-        while descent.goes_on() {
+        while descent.goes_on() && descent.iterations < most {
             self.multiply(&direction, &mut image);
             let slope = dot(&direction, &image);
             if slope.is_nan() || slope <= 0.0 {
