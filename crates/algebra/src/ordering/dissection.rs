@@ -10,7 +10,7 @@
 //!
 //! Sorting takes O(n log² n), everything else O(n log n).
 
-use super::{Graph, ROOT};
+use super::graph::{Graph, ROOT};
 use std::ops::Range;
 
 /// Sets of at most so many groups are not divided.
@@ -225,7 +225,7 @@ fn cost([low, high]: [i64; 2], all: i64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::Groups;
+    use super::super::graph::Groups;
     use super::*;
     use crate::csr::Csr;
     use crate::pattern::Cliques;

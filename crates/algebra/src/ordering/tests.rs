@@ -1,3 +1,4 @@
+use super::graph::is_permutation;
 use super::*;
 use crate::pattern::Cliques;
 
