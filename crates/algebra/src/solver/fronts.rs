@@ -173,20 +173,17 @@ impl Fronts {
             connected,
         };
         let small = job.fronts.pieces.len() <= 1;
-        if small || rayon::current_num_threads() == 1 {
+        let done = if small || rayon::current_num_threads() == 1 {
             let Some(mut room) = kept.or_else(|| Room::new(job.fronts.widest)) else {
                 return Err(Failure::Memory);
             };
             let done = job.subtrees(values, &mut room);
-            if small {
-                self.room = Some(room);
-                return done;
-            }
-            lock(&self.squares).clear();
-            return done;
-        }
-        let done = job.share(values);
-        lock(&self.squares).clear();
+            self.room = small.then_some(room);
+            done
+        } else {
+            job.share(values)
+        };
+        lock(&self.squares).end(small);
         done
     }
 }

@@ -7,7 +7,7 @@ use super::response::{Response, multiply};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// Responses whose products with all before them are one piece of work.
+/// Responses whose products with all before them are one piece of work: so many use eight columns while these are in the cache.
 const PIECE: usize = 16;
 
 /// W = Yᵀ Y, row-major, `responses.len()` squared entries; each has the bits of [`Response::dot`].

@@ -244,7 +244,7 @@ impl Iterative {
         self.solve_within(b, x, (tolerance, usize::MAX))
     }
 
-    /// As [`Iterative::solve`], in `most` iterations.
+    /// As [`Iterative::solve`], in `most` iterations; an engine ([`Iterative::on`]) makes as many as it needs.
     ///
     /// # Errors
     /// Those of [`Iterative::solve`], and more iterations.

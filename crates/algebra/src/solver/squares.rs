@@ -55,10 +55,12 @@ impl Squares {
         }
     }
 
-    /// Leaves all that is free to the system.
-    pub fn clear(&mut self) {
-        self.held -= self.free.iter().map(Vec::len).sum::<usize>();
-        self.free.clear();
+    /// Tells that a factorisation has ended, well or not: no vector is in use. `keep`: whether free ones stay for the next.
+    pub fn end(&mut self, keep: bool) {
+        if !keep {
+            self.free.clear();
+        }
+        self.held = self.free.iter().map(Vec::len).sum();
     }
 }
 
@@ -84,7 +86,10 @@ mod tests {
         assert_eq!((f.len(), squares.held), (90, 140));
         squares.give(f);
         squares.give(d);
-        squares.clear();
-        assert_eq!(squares.held, 10);
+        // e is lost, as vectors are where a factorisation fails
+        squares.end(true);
+        assert_eq!((squares.held, squares.free.len()), (130, 2));
+        squares.end(false);
+        assert_eq!((squares.held, squares.free.len()), (0, 0));
     }
 }
