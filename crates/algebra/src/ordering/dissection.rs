@@ -229,18 +229,13 @@ mod tests {
     use super::*;
     use crate::csr::Csr;
     use crate::pattern::Cliques;
+    use carom_testing::Random;
 
     /// Groups of one unknown at scattered places, joined to those that are near.
     fn scattered() -> (Graph, Vec<[f64; 3]>) {
-        let mut state = 7_u64;
-        let mut random = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1);
-            (state >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut random = Random(7);
         let places: Vec<[f64; 3]> = (0..900)
-            .map(|_| [random(), 0.6 * random(), 0.4 * random()])
+            .map(|_| [1.0, 0.6, 0.4].map(|most| random.between(0.0, most)))
             .collect();
         let mut cliques = Cliques::new();
         for (i, a) in places.iter().enumerate() {

@@ -1,6 +1,7 @@
 use super::graph::is_permutation;
 use super::*;
 use crate::pattern::Cliques;
+use carom_testing::Random;
 
 /// Grid of cells with `dofs` unknowns per node; every third cell leaves its last node's first unknown out.
 fn grid(cells: [usize; 3], dofs: usize) -> (Csr, Vec<u32>) {
@@ -27,17 +28,11 @@ fn grid(cells: [usize; 3], dofs: usize) -> (Csr, Vec<u32>) {
 /// Places of the nodes of a grid of that shape, moved by up to `part` of an edge, and turned about two axes.
 fn places(cells: [usize; 3], part: f64, turn: f64) -> Vec<[f64; 3]> {
     let [nx, ny, nz] = cells.map(|n| n + 1);
-    let mut state = 1_u64;
-    let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut random = Random(1);
     let (s, c) = turn.sin_cos();
     let place = |k: usize| {
         let [x, y, z] =
-            [k % nx, k / nx % ny, k / (nx * ny)].map(|x| x as f64 + 2.0 * part * random());
+            [k % nx, k / nx % ny, k / (nx * ny)].map(|x| x as f64 + part * random.next());
         let [x, y] = [c * x - s * y, s * x + c * y];
         [x, c * y - s * z, s * y + c * z]
     };
