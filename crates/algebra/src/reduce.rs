@@ -8,6 +8,9 @@
 /// Terms of one block.
 pub const BLOCK: usize = 1024;
 
+/// Terms from which on halves are summed by threads.
+const SHARED: usize = 64 * BLOCK;
+
 /// Lanes of one block: two additions never wait for each other within a lane's latency.
 const LANES: usize = 8;
 
@@ -34,13 +37,19 @@ pub fn sum(x: &[f64]) -> f64 {
 }
 
 /// Sums the blocks of `begin..end` by halves; a half is a whole number of blocks.
-fn pairwise(begin: usize, end: usize, leaf: &impl Fn(usize, usize) -> f64) -> f64 {
+fn pairwise(begin: usize, end: usize, leaf: &(impl Fn(usize, usize) -> f64 + Sync)) -> f64 {
     let length = end - begin;
     if length <= BLOCK {
         return leaf(begin, end);
     }
     let middle = begin + length.div_ceil(BLOCK).div_ceil(2) * BLOCK;
-    pairwise(begin, middle, leaf) + pairwise(middle, end, leaf)
+    let halves = [(begin, middle), (middle, end)];
+    let half = |k: usize| pairwise(halves[k].0, halves[k].1, leaf);
+    let [one, other] = match length < SHARED {
+        true => [0, 1].map(half),
+        false => rayon::join(|| half(0), || half(1)).into(),
+    };
+    one + other
 }
 
 /// Sum of `term(x_i, y_i)` over one block, in lanes that are added in order.

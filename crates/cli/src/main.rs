@@ -137,10 +137,11 @@ fn obey(arguments: Arguments) -> u8 {
         .init();
     let takes = matches!(command, Command::Run(_) | Command::Resume(_));
     ranks::with_ranks(takes, |ranks| {
-        if let Some(threads) = ranks::threads(ranks, threads) {
-            let mut pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-            if ranks.count() > 1 {
-                // one of them is this one: it has nothing else to do, and MPI is its
+        let threads = ranks::threads(ranks, threads);
+        if takes || threads.is_some() {
+            let mut pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+            if takes {
+                // one of them is this one, which the loops of a step need not wake then; and MPI is its
                 pool = pool.use_current_thread();
             }
             if let Err(error) = pool.build_global() {

@@ -73,13 +73,11 @@ pub(crate) fn operator(
         Solver::Auto => Some(Ordering::new(&matrix, &groups, Some(&place))?),
         Solver::Direct | Solver::Iterative => None,
     };
-    let mut solver = Iterative::new(matrix, &groups)?;
+    let mut solver = Iterative::new(&matrix, &groups)?;
     match order {
-        Some(order) if !pays(&mut solver, (system, of), order.work()) => {
-            factor(solver.matrix(), order)
-        }
+        Some(order) if !pays(&mut solver, (system, of), order.work()) => factor(&matrix, order),
         _ => Ok(Operator::Iterated(Iterated {
-            solver: Some(Box::new(solver.on(of.ranks, place)?)),
+            solver: Some(Box::new(solver.on(of.ranks, (&matrix, place))?)),
             tolerance: TOLERANCE,
             failed: None,
         })),
@@ -119,7 +117,7 @@ fn pays(
     let sweeps = sweeps + 2.0 * COLUMN * columns as f64;
     let direct = operations / OPERATIONS_PER_BYTE + sweeps * 8.0 * entries;
     let n = solver.unknowns();
-    let iteration = 12.0 * solver.matrix().nnz() as f64 + 96.0 * n as f64;
+    let iteration = solver.bytes() as f64;
     // more of them than would cost as much as a factor are not counted
     let most = match 8.0 * entries > MOST_BYTES {
         true => usize::MAX,

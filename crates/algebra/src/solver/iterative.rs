@@ -2,17 +2,17 @@
 //!
 //! In a dynamic step the mass term bounds the condition number by about 1 + (c Δt/h)², with c the speed of waves and h the size of an
 //! element, whatever the number of unknowns: iterations do not grow with the mesh at a given Courant number. No factor, no memory
-//! beyond the matrix and some vectors.
+//! beyond half of the matrix and some vectors.
+
+use std::ops::Range;
 
 use carom_ranks::{Engine, OwnRows, Ranks};
 use rayon::prelude::*;
 
+use super::symmetric_blocks::SymmetricBlocks;
 use crate::dense::DenseCholesky;
 use crate::reduce::dot;
 use crate::{Error, csr::Csr};
-
-/// Rows that one thread multiplies at a time.
-const CHUNK: usize = 4096;
 
 /// Iterations without a smaller residual after which rounding lets it fall no further.
 const PATIENCE: usize = 60;
@@ -20,15 +20,17 @@ const PATIENCE: usize = 60;
 /// Factor of the tolerance up to which a residual that falls no further is a solution.
 const NEAR: f64 = 1e3;
 
+/// Numbers of each unknown that an iteration reads or writes beside the product and the blocks of the preconditioner.
+const VECTORS: usize = 16;
+
 /// A symmetric positive definite matrix that is solved with by iterations.
 pub struct Iterative {
-    matrix: Csr,
-    /// First unknown of each block, and an end.
-    starts: Vec<u32>,
-    /// Inverses of the blocks, row-major, one after the other.
+    n: usize,
+    /// Unknowns of a block.
+    size: usize,
+    matrix: SymmetricBlocks,
+    /// Inverses of the blocks on the diagonal, row-major, one after the other.
     inverses: Vec<f64>,
-    /// Where each begins.
-    places: Vec<usize>,
     residual: Vec<f64>,
     preconditioned: Vec<f64>,
     direction: Vec<f64>,
@@ -36,9 +38,9 @@ pub struct Iterative {
     best: Vec<f64>,
     /// Products with the matrix so far.
     products: usize,
-    /// Who shares the rows of products, and where the parts of each begin.
+    /// Who shares the rows of products, and where the chunks of each begin.
     ranks: Ranks,
-    parts: Vec<usize>,
+    chunks: Vec<usize>,
     /// Place of the node of each block, m; empty in one process.
     nodes: Vec<[f64; 3]>,
     /// What solves without contacts in place of the iterations here, of ranks that have it.
@@ -46,11 +48,12 @@ pub struct Iterative {
 }
 
 impl Iterative {
-    /// `group_of[i]`: node of unknown i; those of a node follow each other.
+    /// `group_of[i]`: node of unknown i; those of a node follow each other. The blocks of the preconditioner are those of nodes where all have as
+    /// many unknowns, else parts of them: of six unknowns displacement and rotation.
     ///
     /// # Errors
     /// A block on the diagonal that is not positive definite or not finite; `group_of` of the wrong length.
-    pub fn new(matrix: Csr, group_of: &[u32]) -> Result<Self, Error> {
+    pub fn new(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
         if group_of.len() != matrix.n {
             return Err(Error::WrongLength {
                 what: "groups of unknowns",
@@ -58,55 +61,57 @@ impl Iterative {
                 found: group_of.len(),
             });
         }
-        let begins = |&i: &usize| i == 0 || group_of[i] != group_of[i - 1];
-        let starts = (0..matrix.n).filter(begins).chain([matrix.n]);
-        let mut solver = Self {
-            starts: starts.map(|i| i as u32).collect(),
-            inverses: Vec::new(),
-            places: Vec::new(),
-            residual: vec![0.0; matrix.n],
-            preconditioned: vec![0.0; matrix.n],
-            direction: vec![0.0; matrix.n],
-            image: vec![0.0; matrix.n],
-            best: vec![0.0; matrix.n],
+        let size = common_size(group_of);
+        let blocks = SymmetricBlocks::new(matrix, size);
+        let vector = || vec![0.0; matrix.n];
+        Ok(Self {
+            n: matrix.n,
+            size,
+            inverses: inverses(matrix, size)?,
+            residual: vector(),
+            preconditioned: vector(),
+            direction: vector(),
+            image: vector(),
+            best: vector(),
             products: 0,
             ranks: Ranks::alone(),
-            parts: vec![0, matrix.n],
+            chunks: vec![0, blocks.chunks()],
             nodes: Vec::new(),
             engine: None,
-            matrix,
-        };
-        solver.invert()?;
-        Ok(solver)
+            matrix: blocks,
+        })
     }
 
-    /// Shares the rows of products with other ranks, which all have the matrix: each multiplies its own and is given the others. Ranks that
+    /// Shares the rows of products with other ranks, which all have this `matrix`: each multiplies its own and is given the others. Ranks that
     /// have an engine ([`Ranks::has_engine`]) solve with it. `place`: of the node of an unknown, m.
     ///
     /// # Errors
     /// [`Error::Engine`].
-    pub fn on(mut self, ranks: &Ranks, place: impl Fn(usize) -> [f64; 3]) -> Result<Self, Error> {
+    pub fn on(
+        mut self,
+        ranks: &Ranks,
+        (matrix, place): (&Csr, impl Fn(usize) -> [f64; 3]),
+    ) -> Result<Self, Error> {
         if ranks.count() == 1 {
             return Ok(self);
         }
-        let blocks = self.starts.len() - 1;
-        let begins = ranks.starts(blocks).into_iter();
-        self.parts = begins.map(|block| self.starts[block] as usize).collect();
-        let firsts = self.starts[..blocks].iter();
-        self.nodes = firsts.map(|&first| place(first as usize)).collect();
+        self.chunks = ranks.starts(self.matrix.chunks());
+        self.nodes = (0..self.n).step_by(self.size).map(place).collect();
         self.ranks = ranks.clone();
-        self.take_engine()?;
+        self.take_engine(matrix)?;
         Ok(self)
     }
 
     /// Gives the own rows to the engine, if there is one.
-    fn take_engine(&mut self) -> Result<(), Error> {
+    fn take_engine(&mut self, matrix: &Csr) -> Result<(), Error> {
         if !self.ranks.has_engine() {
             return Ok(());
         }
         // its solver before goes first, of which memory may have no room for two
         self.engine = None;
-        let rows = self.own_rows();
+        let blocks = self.ranks.starts(self.n / self.size).into_iter();
+        let starts: Vec<usize> = blocks.map(|block| block * self.size).collect();
+        let rows = self.own_rows(matrix, &starts);
         self.engine = self
             .ranks
             .engine(&rows)
@@ -114,29 +119,27 @@ impl Iterative {
         Ok(())
     }
 
-    fn own_rows(&self) -> OwnRows<'_> {
+    fn own_rows<'a>(&self, matrix: &Csr, starts: &'a [usize]) -> OwnRows<'a> {
         let rank = self.ranks.rank();
-        let own = self.parts[rank]..self.parts[rank + 1];
-        let sizes = self.starts.windows(2).map(|pair| pair[1] - pair[0]);
-        let block = sizes.clone().next().unwrap_or(1);
+        let own = starts[rank]..starts[rank + 1];
         // two or three displacements at each node
-        let alike = (2..=3).contains(&block) && sizes.clone().all(|size| size == block);
+        let alike = (2..=3).contains(&self.size);
         let mut rows = OwnRows {
-            starts: &self.parts,
+            starts,
             offsets: vec![0],
             columns: Vec::new(),
             values: Vec::new(),
-            block: if alike { block as usize } else { 1 },
+            block: if alike { self.size } else { 1 },
             places: Vec::new(),
         };
         for i in own.clone() {
-            let (columns, values) = self.matrix.row(i);
+            let (columns, values) = matrix.row(i);
             rows.columns.extend(columns.iter().map(|j| *j as i32));
             rows.values.extend_from_slice(values);
             rows.offsets.push(rows.values.len() as i32);
         }
         if alike {
-            let dim = block as usize;
+            let dim = self.size;
             let places = &self.nodes[own.start / dim..own.end / dim];
             rows.places = places.iter().flat_map(|x| x[..dim].to_vec()).collect();
         }
@@ -147,93 +150,75 @@ impl Iterative {
     ///
     /// # Errors
     /// A block on the diagonal that is not positive definite or not finite; [`Error::Engine`].
-    pub fn renew(&mut self, matrix: Csr) -> Result<(), Error> {
-        self.matrix = matrix;
-        self.invert()?;
-        self.take_engine()
-    }
-
-    /// Inverts the blocks on the diagonal.
-    fn invert(&mut self) -> Result<(), Error> {
-        self.inverses.clear();
-        self.places.clear();
-        let mut block = Vec::new();
-        for pair in self.starts.windows(2) {
-            let (first, n) = (pair[0] as usize, (pair[1] - pair[0]) as usize);
-            block.clear();
-            for i in first..first + n {
-                block.extend((first..first + n).map(|j| self.matrix.get(i, j)));
-            }
-            let refused = |_| Error::NotPositiveDefinite {
-                unknown: first,
-                diagonal: self.matrix.get(first, first),
-            };
-            let factor = DenseCholesky::new(n, &block).map_err(refused)?;
-            let place = self.inverses.len();
-            self.places.push(place);
-            self.inverses.resize(place + n * n, 0.0);
-            for k in 0..n {
-                let column = &mut self.inverses[place + k * n..place + (k + 1) * n];
-                column[k] = 1.0;
-                factor.solve(column);
-            }
-        }
-        Ok(())
-    }
-
-    /// The matrix.
-    pub fn matrix(&self) -> &Csr {
-        &self.matrix
+    pub fn renew(&mut self, matrix: &Csr) -> Result<(), Error> {
+        self.inverses = inverses(matrix, self.size)?;
+        self.matrix = SymmetricBlocks::new(matrix, self.size);
+        self.take_engine(matrix)
     }
 
     /// Number of unknowns.
     pub fn unknowns(&self) -> usize {
-        self.matrix.n
+        self.n
+    }
+
+    /// Bytes that an iteration reads and writes.
+    pub fn bytes(&self) -> usize {
+        self.matrix.bytes() + 8 * (self.inverses.len() + VECTORS * self.n)
     }
 
     /// y = A x. Threads and ranks share the rows; an entry has the same bits on any number of them.
     pub fn multiply(&mut self, x: &[f64], y: &mut [f64]) {
         self.products += 1;
-        let matrix = &self.matrix;
         let rank = self.ranks.rank();
-        let [first, end] = [self.parts[rank], self.parts[rank + 1]];
-        let chunks = y[first..end].par_chunks_mut(CHUNK).enumerate();
-        chunks.for_each(|(k, chunk)| {
-            for (i, y) in chunk.iter_mut().enumerate() {
-                let (columns, values) = matrix.row(first + k * CHUNK + i);
-                let mut sum = 0.0;
-                for (&j, a) in columns.iter().zip(values) {
-                    sum += a * x[j as usize];
-                }
-                *y = sum;
-            }
-        });
-        self.ranks.gather(&mut y[..matrix.n], &self.parts);
+        let own = self.chunks[rank]..self.chunks[rank + 1];
+        self.matrix.multiply(own, x, y);
+        if self.ranks.count() > 1 {
+            let length = self.matrix.length();
+            let starts = self.chunks.iter().map(|k| (k * length).min(self.n));
+            let starts: Vec<usize> = starts.collect();
+            self.ranks.gather(&mut y[..self.n], &starts);
+        }
     }
 
     /// z = G⁻¹ r, with G the blocks on the diagonal.
     pub fn precondition(&self, r: &[f64], z: &mut [f64]) {
-        for (block, pair) in self.starts.windows(2).enumerate() {
-            let range = pair[0] as usize..pair[1] as usize;
-            let n = range.len();
-            let inverse = &self.inverses[self.places[block]..];
-            let r = &r[range.clone()];
-            for (row, z) in inverse.chunks_exact(n).zip(&mut z[range]) {
-                *z = row.iter().zip(r).map(|(a, r)| a * r).sum();
+        let length = self.matrix.length();
+        let blocks = self.inverses.par_chunks(length * self.size);
+        let parts = z.par_chunks_mut(length).zip(r.par_chunks(length));
+        let parts = parts.zip(blocks);
+        parts.for_each(|((z, r), blocks)| multiply_blocks(self.size, blocks, r, z));
+    }
+
+    /// Goes a step along the direction p, with q = A p: x += `step` p and r -= `step` q; z = G⁻¹ r.
+    pub(super) fn advance(&self, step: f64, [p, q]: [&[f64]; 2], [x, r, z]: [&mut [f64]; 3]) {
+        let length = self.matrix.length();
+        let blocks = self.inverses.par_chunks(length * self.size);
+        let moved = x.par_chunks_mut(length).zip(p.par_chunks(length));
+        let left = r.par_chunks_mut(length).zip(q.par_chunks(length));
+        let parts = moved.zip(left).zip(z.par_chunks_mut(length)).zip(blocks);
+        parts.for_each(|((((x, p), (r, q)), z), blocks)| {
+            add_scaled(step, p, x);
+            add_scaled(-step, q, r);
+            multiply_blocks(self.size, blocks, r, z);
+        });
+    }
+
+    /// The next direction: p = z + `share` p.
+    pub(super) fn turn(&self, share: f64, z: &[f64], p: &mut [f64]) {
+        let length = self.matrix.length();
+        let parts = p.par_chunks_mut(length).zip(z.par_chunks(length));
+        parts.for_each(|(p, z)| {
+            for (p, z) in p.iter_mut().zip(z) {
+                *p = z + share * *p;
             }
-        }
+        });
     }
 
     /// Entries of G⁻¹ in the row of an unknown: the first unknown of its block, and the entries from there on.
     pub fn inverse_row(&self, unknown: usize) -> (usize, &[f64]) {
-        let block = self
-            .starts
-            .partition_point(|&start| start as usize <= unknown)
-            - 1;
-        let first = self.starts[block] as usize;
-        let n = self.starts[block + 1] as usize - first;
-        let place = self.places[block] + (unknown - first) * n;
-        (first, &self.inverses[place..place + n])
+        let place = unknown * self.size;
+        let row = &self.inverses[place..place + self.size];
+        (unknown - unknown % self.size, row)
     }
 
     /// x of A x = b, from x = 0, and the number of iterations. They end where |b - A x| falls below `tolerance` |b|, in the norm of G⁻¹.
@@ -283,21 +268,16 @@ impl Iterative {
                 descent.stop();
                 break;
             }
-            let step = now / slope;
-            add_scaled(step, &direction, x);
-            add_scaled(-step, &image, &mut residual);
-            self.precondition(&residual, &mut preconditioned);
+            let moved = [&mut x[..], &mut residual[..], &mut preconditioned];
+            self.advance(now / slope, [&direction, &image], moved);
             let next = dot(&residual, &preconditioned);
             if descent.take(next) {
                 self.best.copy_from_slice(x);
             }
-            let share = next / now;
-            for (p, z) in direction.iter_mut().zip(&preconditioned) {
-                *p = z + share * *p;
-            }
+            self.turn(next / now, &preconditioned, &mut direction);
             now = next;
         }
-        if descent.least < first {
+        if descent.least < first && descent.is_near() {
             x.copy_from_slice(&self.best);
         }
         let worst = largest(&residual);
@@ -309,6 +289,62 @@ impl Iterative {
     /// Products with the matrix so far.
     pub fn products(&self) -> usize {
         self.products
+    }
+}
+
+/// Unknowns of a block: those of a node where all nodes have as many, else what divides all.
+fn common_size(group_of: &[u32]) -> usize {
+    let nodes = || group_of.chunk_by(|a, b| a == b).map(<[u32]>::len);
+    let divides = |size: &usize| nodes().all(|unknowns| unknowns % size == 0);
+    let alike = |size: &usize| *size < 6 || nodes().all(|unknowns| unknowns == 6);
+    [6, 3, 2]
+        .into_iter()
+        .find(|size| divides(size) && alike(size))
+        .unwrap_or(1)
+}
+
+/// Inverses of the blocks on the diagonal.
+fn inverses(matrix: &Csr, size: usize) -> Result<Vec<f64>, Error> {
+    let mut inverses = vec![0.0; matrix.n * size];
+    let mut block = Vec::new();
+    for (place, inverse) in inverses.chunks_exact_mut(size * size).enumerate() {
+        let own: Range<usize> = place * size..(place + 1) * size;
+        block.clear();
+        for i in own.clone() {
+            block.extend(own.clone().map(|j| matrix.get(i, j)));
+        }
+        let refused = |_| Error::NotPositiveDefinite {
+            unknown: own.start,
+            diagonal: matrix.get(own.start, own.start),
+        };
+        let factor = DenseCholesky::new(size, &block).map_err(refused)?;
+        for (k, column) in inverse.chunks_exact_mut(size).enumerate() {
+            column[k] = 1.0;
+            factor.solve(column);
+        }
+    }
+    Ok(inverses)
+}
+
+/// z = B r, with B square blocks of so many rows on the diagonal.
+fn multiply_blocks(size: usize, blocks: &[f64], r: &[f64], z: &mut [f64]) {
+    match size {
+        6 => multiply_blocks_of::<6>(blocks, r, z),
+        3 => multiply_blocks_of::<3>(blocks, r, z),
+        2 => multiply_blocks_of::<2>(blocks, r, z),
+        _ => multiply_blocks_of::<1>(blocks, r, z),
+    }
+}
+
+fn multiply_blocks_of<const D: usize>(blocks: &[f64], r: &[f64], z: &mut [f64]) {
+    let (rows, _) = blocks.as_chunks::<D>();
+    let (blocks, _) = rows.as_chunks::<D>();
+    let (r, _) = r.as_chunks::<D>();
+    let (z, _) = z.as_chunks_mut::<D>();
+    for ((block, r), z) in blocks.iter().zip(r).zip(z) {
+        for i in 0..D {
+            z[i] = (0..D).map(|j| block[i][j] * r[j]).sum();
+        }
     }
 }
 
@@ -346,7 +382,7 @@ impl Descent {
         !self.broken && self.least > self.tolerance.powi(2) * self.first && self.patience > 0
     }
 
-    /// Counts an iteration with this square of the residual; whether it is the least.
+    /// Counts an iteration with this square of the residual; whether it is the least, and near enough to the tolerance to be a solution.
     pub(super) fn take(&mut self, square: f64) -> bool {
         self.iterations += 1;
         let better = square < self.least;
@@ -360,7 +396,12 @@ impl Descent {
             }
             false => self.patience -= 1,
         }
-        better
+        better && self.is_near()
+    }
+
+    /// Whether the least residual is near enough to the tolerance to be that of a solution.
+    pub(super) fn is_near(&self) -> bool {
+        self.least <= (NEAR * self.tolerance).powi(2) * self.first
     }
 
     /// Ends the iterations: the matrix is not positive definite.
@@ -373,8 +414,7 @@ impl Descent {
     /// # Errors
     /// The residual is not near the tolerance.
     pub(super) fn end(&self, unknown: usize) -> Result<usize, Error> {
-        let near = self.least <= (NEAR * self.tolerance).powi(2) * self.first;
-        match near && !self.broken {
+        match self.is_near() && !self.broken {
             true => Ok(self.iterations),
             false => Err(Error::Iterations {
                 iterations: self.iterations,

@@ -16,6 +16,7 @@ mod saddle;
 mod squares;
 mod supernodal;
 mod sweep;
+mod symmetric_blocks;
 
 pub use crate::ordering::{Ordering, Place};
 pub use cholesky::{Cholesky, FactorStats};

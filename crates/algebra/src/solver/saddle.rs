@@ -163,21 +163,13 @@ impl Saddle {
                 descent.stop();
                 break;
             }
-            let step = now / curvature;
-            add_scaled(step, &self.direction[0], &mut self.found);
-            add_scaled(step, &self.direction[1], &mut lambda);
-            add_scaled(-step, &self.image, &mut self.residual);
-            self.precondition(points, None);
+            self.advance(now / curvature, &mut lambda);
+            self.restrain(points, None);
             let next = dot(&self.residual, &self.preconditioned[0]);
             if descent.take(next) {
                 self.keep(&lambda);
             }
-            let share = next / now;
-            for (p, z) in self.direction.iter_mut().zip(&self.preconditioned) {
-                for (p, z) in p.iter_mut().zip(z) {
-                    *p = z + share * *p;
-                }
-            }
+            self.turn(next / now);
             now = next;
         }
         self.found.copy_from_slice(&self.best[0]);
@@ -187,6 +179,33 @@ impl Saddle {
             *force = -lambda;
         }
         descent.end(largest(&self.residual)).map(|_| ())
+    }
+
+    /// Goes a step along the direction, and divides the residual by G.
+    fn advance(&mut self, step: f64, lambda: &mut [f64]) {
+        let [p, q] = &self.direction;
+        for (first, operator) in &self.operators {
+            let range = *first..*first + operator.unknowns();
+            let moved = [
+                &mut self.found[range.clone()],
+                &mut self.residual[range.clone()],
+                &mut self.preconditioned[0][range.clone()],
+            ];
+            operator.advance(step, [&p[range.clone()], &self.image[range]], moved);
+        }
+        add_scaled(step, q, lambda);
+    }
+
+    /// The next direction: what is preconditioned, and a `share` of the direction before.
+    fn turn(&mut self, share: f64) {
+        let ([z, y], [p, q]) = (&self.preconditioned, &mut self.direction);
+        for (first, operator) in &self.operators {
+            let range = *first..*first + operator.unknowns();
+            operator.turn(share, &z[range.clone()], &mut p[range]);
+        }
+        for (q, y) in q.iter_mut().zip(y) {
+            *q = y + share * *q;
+        }
     }
 
     /// Keeps the iterate as the best.
@@ -236,11 +255,17 @@ impl Saddle {
 
     /// [z; y] of G z + Nᵀ y = r and N z - K y = s, with r the residual and s zero unless given.
     fn precondition(&mut self, points: &[u32], second: Option<&[f64]>) {
-        let [mut z, mut y] = std::mem::take(&mut self.preconditioned);
+        let z = &mut self.preconditioned[0];
         for (first, operator) in &self.operators {
             let range = *first..*first + operator.unknowns();
             operator.precondition(&self.residual[range.clone()], &mut z[range]);
         }
+        self.restrain(points, second);
+    }
+
+    /// The same where z is G⁻¹ r already.
+    fn restrain(&mut self, points: &[u32], second: Option<&[f64]>) {
+        let [mut z, mut y] = std::mem::take(&mut self.preconditioned);
         y.clear();
         y.extend(
             points

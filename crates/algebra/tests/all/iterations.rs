@@ -25,7 +25,7 @@ fn solutions_equal_those_of_the_factor() {
         Cholesky::new(&system.matrix, &system.node)
             .unwrap()
             .solve(&mut reference);
-        let mut solver = Iterative::new(system.matrix, &system.node).unwrap();
+        let mut solver = Iterative::new(&system.matrix, &system.node).unwrap();
         let iterations = solver.solve(&b, &mut x, 1e-13).unwrap();
         assert!(
             distance(&x, &reference) < 1e-11,
@@ -44,7 +44,7 @@ fn iterations_do_not_grow_with_the_mesh() {
         let system = block(n, 3.0);
         let b = Random(32).vector(system.matrix.n);
         let mut x = vec![0.0; b.len()];
-        Iterative::new(system.matrix, &system.node)
+        Iterative::new(&system.matrix, &system.node)
             .unwrap()
             .solve(&b, &mut x, 1e-10)
             .unwrap()
@@ -63,7 +63,7 @@ fn constrained_motions_equal_those_of_the_columns() {
     let columns = factor.respond(&rows);
     let d = gram(&columns.iter().collect::<Vec<_>>());
     let mut saddle = Saddle::default();
-    let solver = Box::new(Iterative::new(system.matrix, &system.node).unwrap());
+    let solver = Box::new(Iterative::new(&system.matrix, &system.node).unwrap());
     saddle.begin(vec![(0, solver)], rows.iter().cloned(), 1e-12);
     // first without compliance, then fewer rows, some of which yield, from the motion before
     let all: Vec<u32> = (0..rows.len() as u32).collect();
@@ -99,7 +99,7 @@ fn constrained_motions_equal_those_of_the_columns() {
 fn a_matrix_that_is_not_positive_definite_is_refused() {
     let mut system = block(3, 1.0);
     system.matrix.add(40, 40, -1e3);
-    let refused = Iterative::new(system.matrix, &system.node).err();
+    let refused = Iterative::new(&system.matrix, &system.node).err();
     assert!(matches!(
         refused,
         Some(Error::NotPositiveDefinite { unknown: 39, .. })
@@ -109,7 +109,7 @@ fn a_matrix_that_is_not_positive_definite_is_refused() {
     let stiff = 10.0 * system.matrix.get(40, 40);
     system.matrix.add(40, 43, stiff);
     system.matrix.add(43, 40, stiff);
-    let mut solver = Iterative::new(system.matrix, &system.node).unwrap();
+    let mut solver = Iterative::new(&system.matrix, &system.node).unwrap();
     let b = Random(34).vector(solver.unknowns());
     let mut x = vec![0.0; b.len()];
     let failed = solver.solve(&b, &mut x, 1e-12);

@@ -115,7 +115,7 @@ impl Matrices {
                 Some(Operator::Iterated(Iterated {
                     solver: Some(solver),
                     ..
-                })) => solver.renew(free.clone()),
+                })) => solver.renew(free),
                 other => {
                     let of = Use {
                         part: None,
