@@ -49,8 +49,19 @@ pub(crate) struct Use<'a> {
     pub(crate) stays: bool,
     /// Whether the matrix has a mass: without, iterations grow with the mesh.
     pub(crate) inertia: bool,
+    /// What solves with the other matrices of the system: contact forces between parts want the same for all. None of the first one.
+    pub(crate) others: Option<Solver>,
     /// Who shares the products of iterations.
     pub(crate) ranks: &'a Ranks,
+}
+
+/// What solves with a matrix, where others of the system shall have the same; none of a diagonal one, which goes with each.
+pub(crate) fn solver_of(operator: &Operator) -> Option<Solver> {
+    match operator {
+        Operator::Diagonal(_) => None,
+        Operator::Factored(_) | Operator::Updated(_) => Some(Solver::Direct),
+        Operator::Iterated(_) => Some(Solver::Iterative),
+    }
 }
 
 /// An operator of a symmetric positive definite matrix; unknowns marked `fixed` are taken out. `nodes`: node of each unknown.
@@ -63,7 +74,10 @@ pub(crate) fn operator(
     let matrix = matrix.with_identity(fixed);
     let groups = groups(nodes);
     let place = |unknown: usize| system.x[nodes[unknown] as usize];
-    let asked = system.nonlinear.iteration.solver;
+    let asked = match (system.nonlinear.iteration.solver, of.others) {
+        (Solver::Auto, Some(same)) => same,
+        (asked, _) => asked,
+    };
     let few = matrix.n < FEW || !of.inertia;
     if asked == Solver::Direct || asked == Solver::Auto && (few || system.needs_factor().is_some())
     {

@@ -16,6 +16,24 @@ impl Operators {
         matches!(self.groups[group].operator, Some(Operator::Iterated(_)))
     }
 
+    /// Leaves the loads of matrices that are solved with by iterations to the problem of contacts: zero in `y`, and the loads in `left`, both in the places
+    /// of [`Operators::begin`]. The others begin as there.
+    pub(crate) fn leave(&mut self, r: &[f64], y: &mut [f64], left: &mut Vec<f64>) {
+        left.clear();
+        left.resize(y.len(), 0.0);
+        for group in &mut self.groups {
+            if !matches!(group.operator, Some(Operator::Iterated(_))) {
+                group.begin(r, y);
+                continue;
+            }
+            y[group.place.clone()].fill(0.0);
+            let parts = group.parts.iter().flat_map(|part| &r[part.clone()]);
+            for (left, r) in left[group.place.clone()].iter_mut().zip(parts) {
+                *left = *r;
+            }
+        }
+    }
+
     /// The matrices that are solved with by iterations, and the places of their first unknowns in the y of `begin`; the largest tolerance.
     /// They come back by [`Operators::take_back`].
     pub(crate) fn lend(&mut self) -> (Vec<(usize, Box<Iterative>)>, f64) {

@@ -221,7 +221,7 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    fn begin(&mut self, r: &[f64], y: &mut [f64]) {
+    pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         let Some(operator) = &mut self.operator else {
             return;
         };

@@ -72,6 +72,10 @@ impl ContactLaw for Compliance {
         self.capture.reach(known)
     }
 
+    fn needs_free_gap(&self) -> bool {
+        self.capture == Capture::Free
+    }
+
     fn relation(&self, _status: Status, local: &Local) -> Relation {
         let damping = self.damping * local.area;
         Relation {

@@ -115,6 +115,10 @@ pub trait ContactLaw {
     fn reach(&self, _known: f64) -> Option<f64> {
         None
     }
+    /// Whether it looks at the gap without any contact force ([`Local::gap_free`]) by itself, not only at sums with what the forces add.
+    fn needs_free_gap(&self) -> bool {
+        false
+    }
     /// What holds in a point of this status other than open. Only the offset may change from step to step: the factors
     /// belong to a matrix that is kept while the statuses stand.
     fn relation(&self, status: Status, local: &Local) -> Relation;

@@ -60,6 +60,11 @@ impl Law {
         self.get().projects()
     }
 
+    /// [`ContactLaw::needs_free_gap`].
+    pub fn needs_free_gap(&self) -> bool {
+        self.get().needs_free_gap()
+    }
+
     /// [`ContactLaw::crushed`].
     pub fn crushed(&self, before: f64, gap: f64) -> f64 {
         self.get().crushed(before, gap)

@@ -89,6 +89,10 @@ impl ContactLaw for Velocity {
         self.capture.reach(known)
     }
 
+    fn needs_free_gap(&self) -> bool {
+        self.capture == Capture::Free
+    }
+
     fn relation(&self, _status: Status, local: &Local) -> Relation {
         Relation {
             offset: self.capture.excess(local),

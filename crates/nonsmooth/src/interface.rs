@@ -86,6 +86,9 @@ impl InterfaceProblem {
     }
 }
 
+/// Residual up to which motion and forces are found together by iterations while statuses change.
+const ROUGH: f64 = 1e-3;
+
 /// Blocks of changes without progress before single changes.
 const PATIENCE: usize = 10;
 
@@ -123,6 +126,8 @@ pub struct Interface {
     product: Vec<f64>,
     reversals: Vec<u32>,
     changes: Vec<u32>,
+    /// Tolerance of iterations beyond their own.
+    rough: f64,
 }
 
 impl Interface {
@@ -155,14 +160,26 @@ impl Interface {
         self.reversals.clear();
         self.reversals.resize(n, 0);
         self.circled = None;
+        self.rough = match compliance.0 {
+            Condensed::Iterated(_) => ROUGH,
+            Condensed::Dense(_) | Condensed::Lumped(_) => 0.0,
+        };
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         let limit = 50 + 10 * n;
         for pass in 1..=limit {
             self.passes = pass;
+            if pass > limit / 2 {
+                self.rough = 0.0;
+            }
             self.equalities(candidates, compliance, s)?;
             self.disagreements(candidates, compliance.0, s);
             let Some(&last) = self.changes.last() else {
-                return self.clip(candidates, compliance, s);
+                if self.rough == 0.0 {
+                    return self.clip(candidates, compliance, s);
+                }
+                // statuses that stand are looked at again with all digits, and then solved for with them
+                self.rough = 0.0;
+                continue;
             };
             if self.changes.len() < fewest {
                 (fewest, patience) = (self.changes.len(), PATIENCE);
@@ -269,7 +286,7 @@ impl Interface {
             self.factor_of.0 = version;
             self.factor_of.1.clone_from(&self.coupled);
         }
-        if self.coupled.is_empty() {
+        if self.coupled.is_empty() && !matches!(d, Condensed::Iterated(_)) {
             return Ok(());
         }
         self.rhs.clear();
@@ -291,7 +308,9 @@ impl Interface {
                 self.numbers.clear();
                 self.numbers.extend(self.coupled.iter().map(|(i, _)| *i));
                 let (numbers, own) = (&self.numbers[..], &self.own[0][..]);
-                let solved = saddle.borrow_mut().solve(numbers, own, &mut self.rhs);
+                let mut saddle_now = saddle.borrow_mut();
+                let solved = saddle_now.solve((numbers, own), self.rough, &mut self.rhs);
+                drop(saddle_now);
                 solved.map_err(|cause| Failure::Singular {
                     points: numbers.len(),
                     cause,
@@ -335,9 +354,6 @@ impl Interface {
                     for (i, product) in self.product.iter_mut().enumerate() {
                         *product = saddle.along_given(i);
                     }
-                }
-                if self.coupled.is_empty() {
-                    saddle.rest();
                 }
             }
         }

@@ -1,12 +1,14 @@
 //! Constrained motions by iterations: forces P of some rows N with `N A⁻¹ Nᵀ P + K P = b`, without a column of A⁻¹ Nᵀ.
 //!
-//! Motion x = A⁻¹ Nᵀ P and forces are found together, from
+//! Motion x = A⁻¹ (r + Nᵀ P) and forces are found together, from
 //!
-//! `[A, Nᵀ; N, -K] [x; -P] = [0; b]`, preconditioned by `[G, Nᵀ; N, -K]`
+//! `[A, Nᵀ; N, -K] [x; -P] = [r; b]`, preconditioned by `[G, Nᵀ; N, -K]`
 //!
 //! with G the blocks of nodes on the diagonal of A and K a diagonal of compliances. All iterates obey the second row, and on them the
 //! iteration is one of conjugate gradients (Dollar, Gould, Schilders and Wathen 2006): it costs a product with A, like that of a motion without
 //! constraints, and a solve with N G⁻¹ Nᵀ + K, which couples only rows that share a node.
+
+use std::mem;
 
 use super::cholesky::Cholesky;
 use super::iterative::{Descent, Iterative, add_scaled, largest};
@@ -23,7 +25,10 @@ pub struct Saddle {
     rows: Vec<SparseRow>,
     /// G⁻¹ Nᵀ, by row.
     lifted: Vec<SparseRow>,
-    /// Motion of forces that were given, and of those that were found.
+    /// r, and its square in the norm of G⁻¹.
+    load: Vec<f64>,
+    square: f64,
+    /// Motion of forces that were given, and of those that were found, with that of the load.
     given: Vec<f64>,
     found: Vec<f64>,
     /// -P of all rows.
@@ -31,6 +36,11 @@ pub struct Saddle {
     /// Rows and compliances of the factor, and the factor of N G⁻¹ Nᵀ + K.
     factor_of: (Vec<u32>, Vec<f64>),
     factor: Option<Cholesky>,
+    /// Rows, compliances and b of the iterations that have ended, which go on where nothing of it changes.
+    of: (Vec<u32>, Vec<f64>, Vec<f64>),
+    /// Forces of these rows, and the square of the residual; none where iterations cannot go on.
+    lambda: Vec<f64>,
+    now: Option<f64>,
     residual: Vec<f64>,
     preconditioned: [Vec<f64>; 2],
     direction: [Vec<f64>; 2],
@@ -42,12 +52,12 @@ pub struct Saddle {
 
 impl Saddle {
     /// Begins with these matrices, the first unknown of each, and rows over all their unknowns. Nothing moves. Iterations will end where the
-    /// residual falls below `tolerance` times that of no motion, in the norm of G⁻¹.
+    /// residual falls below `tolerance` times that of no motion, in the norm of G⁻¹. `load`: fills in r, which is zero where it does not.
     pub fn begin(
         &mut self,
         operators: Vec<(usize, Box<Iterative>)>,
         rows: impl Iterator<Item = SparseRow>,
-        tolerance: f64,
+        (tolerance, load): (f64, impl FnOnce(&mut [f64])),
     ) {
         self.tolerance = tolerance;
         let n = operators
@@ -58,12 +68,13 @@ impl Saddle {
         self.operators = operators;
         self.rows.clear();
         self.rows.extend(rows);
-        let mut lifted = std::mem::take(&mut self.lifted);
+        let mut lifted = mem::take(&mut self.lifted);
         lifted.clear();
         lifted.extend(self.rows.iter().map(|row| self.lift(row)));
         self.lifted = lifted;
         let [one, two] = &mut self.preconditioned;
         for vector in [
+            &mut self.load,
             &mut self.given,
             &mut self.found,
             &mut self.residual,
@@ -78,12 +89,19 @@ impl Saddle {
         two.clear();
         self.multipliers.clear();
         self.multipliers.resize(self.rows.len(), 0.0);
-        self.factor = None;
+        (self.factor, self.now) = (None, None);
+        load(&mut self.load);
+        for (first, operator) in &self.operators {
+            let range = *first..*first + operator.unknowns();
+            let z = &mut self.preconditioned[0][range.clone()];
+            operator.precondition(&self.load[range], z);
+        }
+        self.square = dot(&self.load, &self.preconditioned[0]);
     }
 
     /// Gives the matrices back.
     pub fn end(&mut self) -> Vec<(usize, Box<Iterative>)> {
-        std::mem::take(&mut self.operators)
+        mem::take(&mut self.operators)
     }
 
     /// N G⁻¹ Nᵀ of a row: zero where no force moves it.
@@ -101,7 +119,7 @@ impl Saddle {
         sparse_dot(&self.rows[row], &self.given)
     }
 
-    /// Adds the motion of all forces, times a factor, to a vector over all unknowns.
+    /// Adds the motion of the load and of all forces, times a factor, to a vector over all unknowns.
     pub fn add_motion(&self, factor: f64, y: &mut [f64]) {
         add_scaled(factor, &self.given, y);
         add_scaled(factor, &self.found, y);
@@ -130,59 +148,101 @@ impl Saddle {
     }
 
     /// Forgets the motion found.
-    pub fn rest(&mut self) {
+    fn rest(&mut self) {
         self.found.fill(0.0);
         self.multipliers.fill(0.0);
+        self.now = None;
     }
 
     /// b ← P of some rows, ascending, with `N x + K P = b`; the other rows have no force. `own`: K of these rows, not negative. Iterations begin with
-    /// the motion found last.
+    /// the motion found last, and go on where they have ended for the same rows and b. They end at `tolerance` where that is larger than the one
+    /// that they have begun with, and then wherever rounding lets them.
     ///
     /// # Errors
     /// Rows that depend on each other, of which none has a compliance; iterations that do not end.
-    pub fn solve(&mut self, points: &[u32], own: &[f64], b: &mut [f64]) -> Result<(), Error> {
+    pub fn solve(
+        &mut self,
+        (points, own): (&[u32], &[f64]),
+        tolerance: f64,
+        b: &mut [f64],
+    ) -> Result<(), Error> {
         self.factorise(points, own)?;
         let mut cold = b.to_vec();
         self.of_factor(&mut cold);
-        let first = dot(b, &cold);
-        let mut lambda: Vec<f64> = points
-            .iter()
-            .map(|&k| self.multipliers[k as usize])
-            .collect();
+        let first = self.square + dot(b, &cold);
+        let (of, compliances, target) = &self.of;
+        let same = of == points && compliances == own && target == b;
+        let now = match self.now.filter(|_| same) {
+            Some(now) => now,
+            None => self.start((points, own), b),
+        };
+        let rough = tolerance > self.tolerance;
+        let descent = Descent::new(first, tolerance.max(self.tolerance)).at(now);
+        let ended = self.descend((points, own), (descent, now), rough);
+        self.multipliers.fill(0.0);
+        for ((&k, lambda), force) in points.iter().zip(&self.lambda).zip(b) {
+            self.multipliers[k as usize] = *lambda;
+            *force = -lambda;
+        }
+        match rough {
+            true => Ok(()),
+            false => ended,
+        }
+    }
+
+    /// Begins iterations for some rows at the motion found last; the square of the residual.
+    fn start(&mut self, (points, own): (&[u32], &[f64]), b: &[f64]) -> f64 {
+        self.of = (points.to_vec(), own.to_vec(), b.to_vec());
+        let mut lambda = mem::take(&mut self.lambda);
+        lambda.clear();
+        lambda.extend(points.iter().map(|&k| self.multipliers[k as usize]));
         self.obey((points, own), b, &mut lambda);
+        self.lambda = lambda;
         self.precondition(points, None);
         let [z, y] = &self.preconditioned;
         self.direction[0].clone_from(z);
         self.direction[1].clone_from(y);
-        let mut now = dot(&self.residual, z);
-        let mut descent = Descent::new(first, self.tolerance).at(now);
-        self.keep(&lambda);
+        dot(&self.residual, z)
+    }
+
+    /// The iterations, from the square of the residual `now`. Of rough ones the last iterate is taken, of others the best.
+    fn descend(
+        &mut self,
+        (points, own): (&[u32], &[f64]),
+        (mut descent, mut now): (Descent, f64),
+        rough: bool,
+    ) -> Result<(), Error> {
+        let mut last_is_best = true;
+        if !rough {
+            self.keep();
+        }
         while descent.goes_on() {
             let curvature = self.apply(points, own);
             if curvature.is_nan() || curvature <= 0.0 {
                 descent.stop();
+                last_is_best = false;
                 break;
             }
-            self.advance(now / curvature, &mut lambda);
+            self.advance(now / curvature);
             self.restrain(points, None);
             let next = dot(&self.residual, &self.preconditioned[0]);
-            if descent.take(next) {
-                self.keep(&lambda);
+            last_is_best = descent.take(next) || rough;
+            if last_is_best && !rough {
+                self.keep();
             }
             self.turn(next / now);
             now = next;
         }
-        self.found.copy_from_slice(&self.best[0]);
-        self.multipliers.fill(0.0);
-        for ((&k, lambda), force) in points.iter().zip(&self.best[1]).zip(b) {
-            self.multipliers[k as usize] = *lambda;
-            *force = -lambda;
+        self.now = last_is_best.then_some(now);
+        if !rough {
+            self.found.copy_from_slice(&self.best[0]);
+            self.lambda.clone_from(&self.best[1]);
         }
         descent.end(largest(&self.residual)).map(|_| ())
     }
 
     /// Goes a step along the direction, and divides the residual by G.
-    fn advance(&mut self, step: f64, lambda: &mut [f64]) {
+    fn advance(&mut self, step: f64) {
         let [p, q] = &self.direction;
         for (first, operator) in &self.operators {
             let range = *first..*first + operator.unknowns();
@@ -193,7 +253,7 @@ impl Saddle {
             ];
             operator.advance(step, [&p[range.clone()], &self.image[range]], moved);
         }
-        add_scaled(step, q, lambda);
+        add_scaled(step, q, &mut self.lambda);
     }
 
     /// The next direction: what is preconditioned, and a `share` of the direction before.
@@ -209,16 +269,15 @@ impl Saddle {
     }
 
     /// Keeps the iterate as the best.
-    fn keep(&mut self, lambda: &[f64]) {
+    fn keep(&mut self) {
         self.best[0].copy_from_slice(&self.found);
-        self.best[1].clear();
-        self.best[1].extend_from_slice(lambda);
+        self.best[1].clone_from(&self.lambda);
     }
 
     /// Moves an iterate to one that obeys N x - K λ = b, and finds its residual.
     fn obey(&mut self, (points, own): (&[u32], &[f64]), b: &[f64], lambda: &mut [f64]) {
         let moves = self.found.iter().any(|x| *x != 0.0);
-        self.residual.fill(0.0);
+        self.residual.copy_from_slice(&self.load);
         let mut second = b.to_vec();
         if moves {
             self.direction[0].copy_from_slice(&self.found);
@@ -265,7 +324,7 @@ impl Saddle {
 
     /// The same where z is G⁻¹ r already.
     fn restrain(&mut self, points: &[u32], second: Option<&[f64]>) {
-        let [mut z, mut y] = std::mem::take(&mut self.preconditioned);
+        let [mut z, mut y] = mem::take(&mut self.preconditioned);
         y.clear();
         y.extend(
             points
@@ -293,6 +352,10 @@ impl Saddle {
     fn factorise(&mut self, points: &[u32], own: &[f64]) -> Result<(), Error> {
         let (of, compliances) = &self.factor_of;
         if self.factor.is_some() && of == points && compliances == own {
+            return Ok(());
+        }
+        if points.is_empty() {
+            self.factor = None;
             return Ok(());
         }
         let matrix = self.schur(points, own);

@@ -64,7 +64,7 @@ fn constrained_motions_equal_those_of_the_columns() {
     let d = gram(&columns.iter().collect::<Vec<_>>());
     let mut saddle = Saddle::default();
     let solver = Box::new(Iterative::new(&system.matrix, &system.node).unwrap());
-    saddle.begin(vec![(0, solver)], rows.iter().cloned(), 1e-12);
+    saddle.begin(vec![(0, solver)], rows.iter().cloned(), (1e-12, |_| ()));
     // first without compliance, then fewer rows, some of which yield, from the motion before
     let all: Vec<u32> = (0..rows.len() as u32).collect();
     let some: Vec<u32> = all.iter().copied().filter(|k| k % 3 != 1).collect();
@@ -75,7 +75,7 @@ fn constrained_motions_equal_those_of_the_columns() {
     for (points, own) in [(&all, vec![0.0; all.len()]), (&some, yielding)] {
         let b = Random(33).vector(points.len());
         let mut forces = b.clone();
-        saddle.solve(points, &own, &mut forces).unwrap();
+        saddle.solve((points, &own), 0.0, &mut forces).unwrap();
         // N A⁻¹ Nᵀ P + K P = b, with the products of the columns
         let product = |i: u32| -> f64 {
             let terms = points.iter().zip(&forces);

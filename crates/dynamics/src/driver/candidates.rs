@@ -22,7 +22,10 @@ impl Driver {
         self.load_iteration();
         self.choose_candidates();
         for _ in 0..ADDITIONS {
-            self.begin_solve()?;
+            match self.finds_all_at_once() {
+                true => self.leave_solve(),
+                false => self.begin_solve()?,
+            }
             self.solve_candidates()?;
             self.end_iteration();
             self.look_further();
@@ -72,11 +75,20 @@ impl Driver {
             operators.begin(&self.vectors.work, &mut self.vectors.half);
             failure = operators.failure();
         }
+        self.vectors.left.clear();
         self.hold_links();
         self.phases.sweeps += begin.elapsed();
         match failure {
             None => Ok(()),
             Some((unknown, cause)) => Err(self.not_solved(unknown, cause)),
+        }
+    }
+
+    /// Leaves the solve with the forces in `work` to the problem of contacts.
+    fn leave_solve(&mut self) {
+        if let Some((operators, _)) = self.effective.both() {
+            let vectors = &mut self.vectors;
+            operators.leave(&vectors.work, &mut vectors.half, &mut vectors.left);
         }
     }
 

@@ -4,6 +4,7 @@
 //! so does its factor. Those of the other parts are made anew within the iterations; while contact forces that turn act
 //! between two of them, these parts have one matrix together.
 
+use std::cmp::Reverse;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -17,14 +18,14 @@ use carom_ranks::Ranks;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
-use crate::choice::{Use, solvable};
+use crate::choice::{self, Use, solvable};
 use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
 use crate::costs::Work;
 use crate::error::Error;
 use crate::operator::{Operator, Operators, single, unsolvable};
 use crate::step_map::StepMap;
-use crate::system::{LinkRow, Maps, NumberedModal, System};
+use crate::system::{LinkRow, Maps, NumberedModal, Solver, System};
 
 /// Sizes of the step and stages whose factors are kept beside those of the present one.
 const KEPT: usize = 3;
@@ -76,6 +77,8 @@ pub(super) struct Matrices {
     pub(super) free: Vec<Part>,
     /// The whole derivative of what bodies, inertia and loads give, without contact forces, not symmetric; none unless wanted.
     pub(super) whole: Option<Csr>,
+    /// What solves with all of them; none before the first that is not diagonal.
+    pub(super) solver: Option<Solver>,
     /// Who shares the products of iterations.
     pub(super) ranks: Ranks,
     /// Unknowns of the contact points whose curvature the pattern has room for, by group, one after the other.
@@ -343,11 +346,18 @@ impl Matrices {
         let mut operators = Operators::of(&system.parts, [linear, others].concat());
         let mut diagonal = vec![0.0; system.unknowns()];
         let mut held = HeldColumns::default();
-        for group in &mut operators.groups[..first] {
+        // what the matrices to come would say nobody knows yet
+        let mut solver = (first > 0 && !coupled.is_empty()).then_some(Solver::Direct);
+        let of_size = |group: &usize| Reverse(operators.groups[*group].place.len());
+        let mut largest_first: Vec<usize> = (0..first).collect();
+        largest_first.sort_by_key(of_size);
+        for group in largest_first {
+            let group = &mut operators.groups[group];
             let part = group.parts[0].clone();
             let map = maps.of(part.start);
-            let of = (map, between, ranks);
+            let of = (map, between, (ranks, solver));
             let operator = linear_part(system, &part, of, (&mut diagonal, &mut held))?;
+            solver = solver.or(choice::solver_of(&operator));
             group.operator = Some(operator);
         }
         let mut compliance = Compliance::new(
@@ -382,6 +392,7 @@ impl Matrices {
             matrix: None,
             free: Vec::new(),
             whole: None,
+            solver,
             ranks: ranks.clone(),
             coupled,
             diagonal,
@@ -398,7 +409,7 @@ impl Matrices {
 fn linear_part(
     system: &System,
     part: &Range<usize>,
-    (map, between, ranks): (&StepMap, bool, &Ranks),
+    (map, between, (ranks, others)): (&StepMap, bool, (&Ranks, Option<Solver>)),
     (diagonal, held): (&mut [f64], &mut HeldColumns),
 ) -> Result<Operator, Error> {
     let fixed = &system.fixed[part.clone()];
@@ -415,6 +426,7 @@ fn linear_part(
         part: Some(part),
         stays: true,
         inertia: map.inertia.x != 0.0,
+        others,
         ranks,
     };
     let operator = solvable((system, of), part, &a, fixed, "effective matrix")?;

@@ -1,12 +1,24 @@
 //! Contact forces where matrices are solved with by iterations: forces and motion are found together.
 
 use carom_algebra::Error as AlgebraError;
+use carom_contact::Contact;
 use carom_nonsmooth::Condensed;
 
 use super::Driver;
+use crate::compliance::Compliance;
 use crate::error::{Error, MeshNode};
+use crate::operator::Operators;
 
 impl Driver {
+    /// Whether the motion without contact forces is found together with them: no matrix has a factor, and nobody asks for it alone.
+    pub(super) fn finds_all_at_once(&mut self) -> bool {
+        let system = &*self.system;
+        let asks = |contact: &Contact| contact.law.needs_free_gap();
+        let asked = system.adaptive.is_some() || system.contacts.iter().any(asks);
+        let iterates = |(operators, _): (&mut Operators, &mut Compliance)| operators.iterate();
+        !asked && !self.candidates.is_empty() && self.effective.both().is_some_and(iterates)
+    }
+
     /// Forces and statuses of the candidates; the motion of the forces is added to the begun solve. `factor`: that of contact forces in the
     /// balance.
     ///
@@ -23,7 +35,13 @@ impl Driver {
             .candidates
             .iter()
             .map(|&point| compliance.row(point, operators));
-        self.saddle.get_mut().begin(lent, rows, tolerance);
+        let left = &self.vectors.left;
+        let load = |load: &mut [f64]| {
+            for (load, left) in load.iter_mut().zip(left) {
+                *load = left / factor;
+            }
+        };
+        self.saddle.get_mut().begin(lent, rows, (tolerance, load));
         let problem = (Condensed::Iterated(&self.saddle), compliance.version);
         let solved = self.interface.solve(&self.candidate_data, problem, factors);
         let saddle = self.saddle.get_mut();

@@ -26,6 +26,8 @@ pub(super) struct Vectors {
     pub(super) contact: Vec<f64>,
     pub(super) residual: Vec<f64>,
     pub(super) half: Vec<f64>,
+    /// Loads whose motion is found together with the contact forces, N; empty where it is found before.
+    pub(super) left: Vec<f64>,
     /// The unknown before an iteration.
     pub(super) before: Vec<f64>,
     /// A configuration or an acceleration.
