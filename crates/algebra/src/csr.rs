@@ -3,6 +3,8 @@
 //! Both triangles are stored and the columns of a row are sorted. The pattern is fixed when the matrix is made; adding to an
 //! entry that is not in it is a bug and panics.
 
+use std::borrow::Cow;
+
 use crate::pattern::Cliques;
 
 /// Marks in [`Csr::gathered`] the 1 on the diagonal of an unknown that is held.
@@ -223,12 +225,12 @@ impl Csr {
         }
     }
 
-    /// Copy in which the rows and columns of the unknowns marked `fixed` hold 1 on the diagonal and nothing else, not even
-    /// a stored zero: a factorisation then spends nothing on them.
-    pub fn with_identity(&self, fixed: &[bool]) -> Self {
+    /// The matrix in which the rows and columns of the unknowns marked `fixed` hold 1 on the diagonal and nothing else, not even
+    /// a stored zero: a factorisation then spends nothing on them. A copy where there are any.
+    pub fn with_identity(&self, fixed: &[bool]) -> Cow<'_, Self> {
         match fixed.contains(&true) {
-            true => self.part(std::slice::from_ref(&(0..self.n)), |i| fixed[i]),
-            false => self.clone(),
+            true => Cow::Owned(self.part(std::slice::from_ref(&(0..self.n)), |i| fixed[i])),
+            false => Cow::Borrowed(self),
         }
     }
 
@@ -357,7 +359,9 @@ mod tests {
 
     #[test]
     fn identity_rows_store_the_diagonal_alone() {
-        let matrix = chain().with_identity(&[false, false, true, true]);
+        let matrix = chain()
+            .with_identity(&[false, false, true, true])
+            .into_owned();
         assert_eq!(matrix.row(2), ([2].as_slice(), [1.0].as_slice()));
         assert_eq!(matrix.row(3), ([3].as_slice(), [1.0].as_slice()));
         assert_eq!(matrix.row(1), ([0, 1].as_slice(), [-2.0, 5.0].as_slice()));

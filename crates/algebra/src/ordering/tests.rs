@@ -72,7 +72,7 @@ fn graph(matrix: &Csr, nodes: &[u32]) -> Graph {
 fn cases() -> Vec<(Csr, Vec<u32>)> {
     let mut fixed = grid([6, 5, 4], 3);
     let marks: Vec<bool> = (0..fixed.0.n).map(|i| i % 4 == 1 || i < 50).collect();
-    fixed.0 = fixed.0.with_identity(&marks);
+    fixed.0 = fixed.0.with_identity(&marks).into_owned();
     vec![
         grid([1, 1, 0], 1),
         grid([40, 3, 0], 2),

@@ -4,6 +4,7 @@ use crate::block::block;
 use crate::numbers::distance;
 use carom_algebra::Error;
 use carom_algebra::solver::{Cholesky, Iterative, Saddle, SparseRow, gram};
+use carom_ranks::{Ranks, threads};
 use carom_testing::Random;
 
 /// Rows of the bottom of a block of `n` cubed cells: two neighbours each, so that rows share nodes.
@@ -117,4 +118,109 @@ fn a_matrix_that_is_not_positive_definite_is_refused() {
         matches!(failed, Err(Error::Iterations { .. })),
         "{failed:?}"
     );
+}
+
+#[test]
+fn motions_of_a_load_and_of_forces_are_found_together_and_gone_on_with() {
+    let (n, shift) = (5, 1.0);
+    let system = block(n, shift);
+    let rows = rows(n);
+    let load = Random(35).vector(system.matrix.n);
+    let points: Vec<u32> = (0..rows.len() as u32).filter(|k| k % 3 != 1).collect();
+    let own = vec![0.1; points.len()];
+    let b = Random(36).vector(points.len());
+    // with few digits and then with all, or with all at once
+    let solved = |tolerances: &[f64]| {
+        let mut saddle = Saddle::default();
+        let solver = Box::new(Iterative::new(&system.matrix, &system.node).unwrap());
+        let given = |to: &mut [f64]| to.copy_from_slice(&load);
+        saddle.begin(vec![(0, solver)], rows.iter().cloned(), (1e-12, given));
+        let mut forces = Vec::new();
+        for &tolerance in tolerances {
+            forces.clone_from(&b);
+            saddle
+                .solve((&points, &own), tolerance, &mut forces)
+                .unwrap();
+        }
+        let mut motion = vec![0.0; load.len()];
+        saddle.add_motion(1.0, &mut motion);
+        (saddle, forces, motion)
+    };
+    let (mut at_once, forces, motion) = solved(&[0.0]);
+    // A x = r + Nᵀ P, N x + K P = b
+    let mut image = vec![0.0; load.len()];
+    system.matrix.multiply(&motion, &mut image);
+    let mut all = load.clone();
+    for ((&k, force), (own, b)) in points.iter().zip(&forces).zip(own.iter().zip(&b)) {
+        let row = &rows[k as usize];
+        let terms = || row.dofs.iter().zip(&row.coefficients);
+        let along: f64 = terms().map(|(&i, n)| n * motion[i as usize]).sum();
+        assert!((along + own * force - b).abs() < 1e-10);
+        terms().for_each(|(&i, n)| all[i as usize] += n * force);
+    }
+    assert!(distance(&image, &all) < 1e-10);
+    let (mut in_turn, again, moved) = solved(&[1e-3, 1e-3, 0.0]);
+    assert!(distance(&again, &forces) < 1e-10 && distance(&moved, &motion) < 1e-10);
+    // iterations go on where they have ended
+    let products = |saddle: &mut Saddle| saddle.end()[0].1.products();
+    assert_eq!(products(&mut in_turn), products(&mut at_once));
+    let (mut free, ..) = solved(&[]);
+    free.solve((&[], &[]), 0.0, &mut []).unwrap();
+    let mut motion = vec![0.0; load.len()];
+    free.add_motion(1.0, &mut motion);
+    system.matrix.multiply(&motion, &mut image);
+    assert!(distance(&image, &load) < 1e-10);
+}
+
+#[test]
+fn products_have_the_same_bits_on_any_number_of_threads_and_of_ranks() {
+    // several chunks of rows, the last one short
+    let system = block(14, 0.7);
+    let x = Random(37).vector(system.matrix.n);
+    let product = |threads: usize, ranks: &Ranks| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        let mut solver = Iterative::new(&system.matrix, &system.node)
+            .and_then(|solver| solver.on(ranks, (&system.matrix, |_| [0.0; 3])))
+            .unwrap();
+        let mut y = vec![0.0; x.len()];
+        let multiply = || solver.multiply(&x, &mut y);
+        pool.build().unwrap().install(multiply);
+        y
+    };
+    let reference = product(1, &Ranks::alone());
+    let mut exact = vec![0.0; x.len()];
+    system.matrix.multiply(&x, &mut exact);
+    assert!(distance(&reference, &exact) < 1e-14);
+    assert!(product(3, &Ranks::alone()) == reference);
+    for count in [2, 3, 5] {
+        std::thread::scope(|scope| {
+            for ranks in threads(count) {
+                let (product, reference) = (&product, &reference);
+                scope.spawn(move || assert!(&product(1, &ranks) == reference));
+            }
+        });
+    }
+}
+
+#[test]
+fn blocks_are_those_of_nodes_or_what_nodes_have_in_common() {
+    // the same equations with other names of the nodes: blocks of 6, 3, 2 and 1
+    let system = block(3, 1.0);
+    let n = system.matrix.n;
+    let b = Random(38).vector(n);
+    let solution = |node: &dyn Fn(u32) -> u32| {
+        let nodes: Vec<u32> = (0..n as u32).map(node).collect();
+        let mut x = vec![0.0; n];
+        Iterative::new(&system.matrix, &nodes)
+            .unwrap()
+            .solve(&b, &mut x, 1e-13)
+            .unwrap();
+        x
+    };
+    let reference = solution(&|i| i / 3);
+    let mixed = |i: u32| if i < 6 { 0 } else { i / 3 };
+    let names: [&dyn Fn(u32) -> u32; 5] = [&|i| i / 6, &mixed, &|i| i / 2, &|i| i, &|i| i.min(7)];
+    for node in names {
+        assert!(distance(&solution(node), &reference) < 1e-10);
+    }
 }

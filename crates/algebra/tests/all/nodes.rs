@@ -36,7 +36,10 @@ fn a_part_is_a_restriction_with_the_identity_of_what_is_fixed() {
     let (ranges, fixed) = ([5..20, 30..55], |i: usize| i % 4 == 1);
     let part = matrix.part(&ranges, fixed);
     let marks: Vec<bool> = ranges.iter().cloned().flatten().map(fixed).collect();
-    let twice = matrix.restricted(&ranges).with_identity(&marks);
+    let twice = matrix
+        .restricted(&ranges)
+        .with_identity(&marks)
+        .into_owned();
     assert!((0..40).all(|i| part.row(i) == twice.row(i)));
 }
 

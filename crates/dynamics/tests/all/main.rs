@@ -30,6 +30,7 @@ mod refusals;
 mod rolling;
 mod sliding;
 mod small;
+mod solvers;
 mod stability;
 mod stops;
 mod supports;

@@ -1,0 +1,89 @@
+//! A factor or iterations for several bodies that touch.
+
+use carom_bodies::{BodySpec, Kinematics};
+use carom_contact::Law;
+use carom_contact::law::{Capture, Reading, Velocity};
+use carom_dynamics::{
+    Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Solver, System, scheme,
+};
+use carom_materials::{Elastic, Plane};
+use carom_mesh::{Surface, generate};
+
+const RUBBER: Elastic = Elastic {
+    density: 1000.0,
+    young: 1e9,
+    poisson: 0.3,
+};
+
+/// Elements along a side of the block.
+const N: usize = 18;
+
+/// A block of 20 577 unknowns that falls on a plate of 441, both free: one is large enough for iterations, a factor of the other costs nothing.
+fn driver(solver: Solver, capture: Capture) -> Driver {
+    let mut mesh = generate::box_("block", [0.0, 0.0, 1e-4], [1.0; 3], [N; 3], false);
+    let plate = generate::box_(
+        "plate",
+        [-0.5, -0.5, -0.5],
+        [2.0, 2.0, 0.5],
+        [6, 6, 2],
+        false,
+    );
+    mesh.merge("plate", plate).unwrap();
+    let body = |name: &str, speed: f64| {
+        let cells = mesh.groups[name].elements.clone();
+        let spec = BodySpec::new(name, cells, Kinematics::Solid, RUBBER);
+        ModelBody {
+            velocity: [0.0, 0.0, speed],
+            ..ModelBody::new(spec)
+        }
+    };
+    let bodies = vec![body("block", -5.0), body("plate", 1.0)];
+    let surface = |body: usize, group: &str| {
+        Surface::new(&mesh, &mesh.groups[group], &bodies[body].spec.cells).unwrap()
+    };
+    let law = Law::Velocity(Velocity {
+        capture,
+        reading: Reading::Closed,
+    });
+    let primary = ModelTarget::Surface(surface(1, "plate.top"));
+    let contact = ModelContact::new("touch", surface(0, "block.bottom"), primary, law);
+    let step = 0.5 / N as f64 / RUBBER.wave_speed(Plane::Full);
+    let theta = Scheme::Theta(scheme::Theta { theta: 0.5 });
+    let mut model = Model {
+        contacts: vec![contact],
+        ..Model::new(bodies, mesh, theta, step)
+    };
+    model.nonlinear.iteration.solver = solver;
+    Driver::new(System::new(model).unwrap()).unwrap()
+}
+
+/// The largest difference over the largest.
+fn difference(one: &[f64], other: &[f64]) -> f64 {
+    let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, x| m.max(x.abs()));
+    most(&mut one.iter().zip(other).map(|(a, b)| a - b)) / most(&mut one.iter().copied())
+}
+
+#[test]
+fn bodies_that_touch_have_one_kind_of_solver_and_the_forces_of_factors() {
+    for capture in [Capture::Half, Capture::Free] {
+        let [mut direct, mut chosen] =
+            [Solver::Direct, Solver::Auto].map(|solver| driver(solver, capture));
+        for _ in 0..10 {
+            direct.step().unwrap();
+            chosen.step().unwrap();
+            let [one, other] = [&direct, &chosen].map(|driver| &driver.state().interface);
+            assert_eq!(one.status, other.status);
+        }
+        let [one, other] = [&direct, &chosen].map(Driver::state);
+        // iterations end at 1e-12 of the load, and the errors of ten steps add up
+        let forces = difference(&one.interface.force, &other.interface.force);
+        let motion = difference(&one.motion.v, &other.motion.v);
+        assert!(forces < 1e-9 && motion < 1e-9, "{forces} {motion}");
+        let closed = one.interface.force.iter().filter(|force| **force > 0.0);
+        assert!(closed.count() > N * N / 2);
+        let [one, other] = [&direct, &chosen].map(|driver| driver.costs().work);
+        assert_eq!((one.factorisations, one.products), (2, 0));
+        assert_eq!((other.factorisations, other.columns), (0, 0));
+        assert!(other.products > 0);
+    }
+}
