@@ -14,7 +14,7 @@ use crate::operator::{Operator, groups, unsolvable};
 use crate::system::{Solver, System};
 
 /// Unknowns below which a factor is always cheap.
-const FEW: usize = 5000;
+pub(crate) const FEW: usize = 5000;
 
 /// Additions and multiplications of a factorisation in the time of reading a byte of memory: some 25e9 and 10e9 of them a second.
 const OPERATIONS_PER_BYTE: f64 = 2.5;
@@ -121,7 +121,7 @@ fn factor(matrix: &Csr, order: Ordering) -> Result<Operator, AlgebraError> {
 }
 
 /// Whether iterations are predicted to cost less than a factor of so many entries, made with so many operations.
-fn pays(
+pub(crate) fn pays(
     solver: &mut Iterative,
     (system, of): (&System, Use),
     [entries, operations]: [f64; 2],

@@ -11,6 +11,7 @@ impl Driver {
     /// (both s).
     pub(super) fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error> {
         (self.failed, self.failed_friction) = (None, None);
+        self.effective.return_to_iterations();
         self.renew_targets();
         self.size(dt, next);
         self.begin_stage()?;

@@ -18,6 +18,7 @@ use carom_ranks::Ranks;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
 use super::part_matrix::part_matrix;
+use super::tangent_solver::tangent_solver;
 use crate::choice::{self, Use, solvable};
 use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
@@ -44,12 +45,12 @@ fn key(maps: &Maps) -> impl Iterator<Item = [f64; 4]> {
 
 /// The matrices of all sizes of the step that are kept.
 pub(super) struct Effective {
-    now: Option<Matrices>,
+    pub(super) now: Option<Matrices>,
     kept: Vec<Matrices>,
     /// Number of all made so far.
     made: u64,
     /// Work with factors that are not kept any more.
-    retired: Work,
+    pub(super) retired: Work,
     /// Scratch of the curvature.
     loads: Vec<f64>,
     /// Who shares the products of iterations.
@@ -79,6 +80,8 @@ pub(super) struct Matrices {
     pub(super) whole: Option<Csr>,
     /// What solves with all of them; none before the first that is not diagonal.
     pub(super) solver: Option<Solver>,
+    /// Whether this step alone has factors of tangents.
+    pub(super) left: bool,
     /// Who shares the products of iterations.
     pub(super) ranks: Ranks,
     /// Unknowns of the contact points whose curvature the pattern has room for, by group, one after the other.
@@ -346,8 +349,12 @@ impl Matrices {
         let mut operators = Operators::of(&system.parts, [linear, others].concat());
         let mut diagonal = vec![0.0; system.unknowns()];
         let mut held = HeldColumns::default();
-        // what the matrices to come would say nobody knows yet
-        let mut solver = (first > 0 && !coupled.is_empty()).then_some(Solver::Direct);
+        let mut solver = match (first, coupled.is_empty()) {
+            (_, true) => None,
+            (0, false) => Some(tangent_solver(system, &iterated)),
+            // the counts are of one kind or the other
+            (_, false) => Some(Solver::Direct),
+        };
         let of_size = |group: &usize| Reverse(operators.groups[*group].place.len());
         let mut largest_first: Vec<usize> = (0..first).collect();
         largest_first.sort_by_key(of_size);
@@ -393,6 +400,7 @@ impl Matrices {
             free: Vec::new(),
             whole: None,
             solver,
+            left: false,
             ranks: ranks.clone(),
             coupled,
             diagonal,

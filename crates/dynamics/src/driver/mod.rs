@@ -69,6 +69,7 @@ mod stable;
 mod start;
 mod step;
 mod supports;
+mod tangent_solver;
 mod tangents;
 mod turned;
 mod unfit;

@@ -1,6 +1,5 @@
 //! Matrices that the iterations make anew: pattern, assembly, factors, and what links change with them.
 
-use std::cmp::Reverse;
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
@@ -83,19 +82,7 @@ impl Matrices {
         retired: &mut Work,
     ) -> Result<(), Error> {
         let (floating, weight) = at.proximal;
-        for (k, group) in self.operators.groups[self.first..].iter().enumerate() {
-            match self.free.get_mut(k) {
-                Some(free) => free.renew(a),
-                None => self
-                    .free
-                    .push(Part::new(a, &group.parts, |i| system.fixed[i])),
-            }
-        }
-        let of_size = |k: &usize| Reverse(self.operators.groups[self.first + k].place.len());
-        let mut largest_first: Vec<usize> = (0..self.free.len()).collect();
-        largest_first.sort_by_key(of_size);
-        for k in largest_first {
-            let group = &mut self.operators.groups[self.first + k];
+        for (k, group) in self.operators.groups[self.first..].iter_mut().enumerate() {
             let fixed: Vec<bool> = group
                 .parts
                 .iter()
@@ -103,6 +90,12 @@ impl Matrices {
                 .flatten()
                 .map(|i| system.fixed[i])
                 .collect();
+            match self.free.get_mut(k) {
+                Some(free) => free.renew(a),
+                None => self
+                    .free
+                    .push(Part::new(a, &group.parts, |i| system.fixed[i])),
+            }
             let free = self.free[k].matrix_mut();
             let mut begin = 0;
             for part in &group.parts {
@@ -133,10 +126,7 @@ impl Matrices {
                     };
                     let none = vec![false; free.n];
                     let new = choice::operator((system, of), free, &none, &nodes);
-                    new.map(|new| {
-                        self.solver = self.solver.or(choice::solver_of(&new));
-                        *other = Some(new);
-                    })
+                    new.map(|new| *other = Some(new))
                 }
             };
             if let Err(cause) = factored {
@@ -300,7 +290,7 @@ impl Matrices {
 }
 
 /// Counts the work with a factor that is dropped.
-fn retire(operator: &Operator, retired: &mut Work) {
+pub(super) fn retire(operator: &Operator, retired: &mut Work) {
     if let Some(stats) = operator.stats() {
         retired.add_factor(stats);
     }

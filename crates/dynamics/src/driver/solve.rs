@@ -45,6 +45,19 @@ impl Driver {
     /// # Errors
     /// No equilibrium, an element or a matrix that fails.
     pub(super) fn solve(&mut self) -> Result<(), Error> {
+        match self.solve_from_guesses() {
+            Err(error) if self.effective.leave_iterations(&self.system) => {
+                tracing::debug!(
+                    "step {}: {error}; once more with factors",
+                    self.state.step + 1
+                );
+                self.solve_from_guesses()
+            }
+            other => other,
+        }
+    }
+
+    fn solve_from_guesses(&mut self) -> Result<(), Error> {
         let solved = self.iterate(false);
         match solved {
             // elements inside out: once more from another guess

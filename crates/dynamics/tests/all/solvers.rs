@@ -1,12 +1,12 @@
 //! A factor or iterations for several bodies that touch.
 
 use carom_bodies::{BodySpec, Kinematics};
-use carom_contact::Law;
 use carom_contact::law::{Capture, Reading, Velocity};
+use carom_contact::{self as contact, Law};
 use carom_dynamics::{
     Driver, Model, ModelBody, ModelContact, ModelTarget, Scheme, Solver, System, scheme,
 };
-use carom_materials::{Elastic, Plane};
+use carom_materials::{Elastic, Law as Material, NeoHooke, Plane};
 use carom_mesh::{Surface, generate};
 
 const RUBBER: Elastic = Elastic {
@@ -86,4 +86,56 @@ fn bodies_that_touch_have_one_kind_of_solver_and_the_forces_of_factors() {
         assert_eq!((other.factorisations, other.columns), (0, 0));
         assert!(other.products > 0);
     }
+}
+
+/// A soft block at finite strain that falls fast on a plane, in long steps.
+fn crushed(solver: Solver) -> Driver {
+    const SIDE: usize = 12;
+    let mesh = generate::box_("block", [0.0, 0.0, 0.01], [1.0; 3], [SIDE; 3], false);
+    let soft = Elastic {
+        young: 5e6,
+        ..RUBBER
+    };
+    let cells = mesh.groups["block"].elements.clone();
+    let mut spec = BodySpec::new("block", cells, Kinematics::Solid, soft);
+    spec.material = Material::NeoHooke(NeoHooke { initial: soft });
+    let block = ModelBody {
+        velocity: [0.0, 0.0, -60.0],
+        ..ModelBody::new(spec)
+    };
+    let bottom = Surface::new(&mesh, &mesh.groups["block.bottom"], &block.spec.cells).unwrap();
+    let law = Law::Velocity(Velocity {
+        capture: Capture::Half,
+        reading: Reading::Closed,
+    });
+    let ground = ModelTarget::rigid(contact::Plane {
+        point: [0.0; 3],
+        normal: [0.0, 0.0, 1.0],
+    });
+    let contact = ModelContact::new("ground", bottom, ground, law);
+    let theta = Scheme::Theta(scheme::Theta { theta: 0.5 });
+    let mut model = Model {
+        contacts: vec![contact],
+        ..Model::new(vec![block], mesh, theta, 5e-4)
+    };
+    model.nonlinear.iteration.solver = solver;
+    Driver::new(System::new(model).unwrap()).unwrap()
+}
+
+#[test]
+fn steps_in_which_iterations_fail_have_factors() {
+    let [mut direct, mut chosen] = [Solver::Direct, Solver::Auto].map(crushed);
+    for _ in 0..16 {
+        direct.step().unwrap();
+        chosen.step().unwrap();
+    }
+    // no step was halved that factors take whole
+    let [one, other] = [&direct, &chosen].map(|driver| driver.state().control.failed);
+    assert_eq!((one, other), (0, 0));
+    let work = chosen.costs().work;
+    assert!(work.factorisations > 0 && work.products > 0, "{work:?}");
+    let [one, other] = [&direct, &chosen].map(|driver| &driver.state().motion.u);
+    // steps end at 1e-10 of the forces, and errors of sixteen add up
+    let motion = difference(one, other);
+    assert!(motion < 1e-7, "{motion}");
 }
