@@ -13,7 +13,7 @@
 use carom_bodies::Kinematics;
 use carom_contact::Law;
 use carom_contact::law::Adhesion;
-use carom_dynamics::{Driver, Model, Scheme, march};
+use carom_dynamics::{Driver, Model, Scheme, Solver, march};
 use carom_exact::closed_forms::{penetration_bound_half, penetration_bound_now};
 use carom_materials::{Elastic, Plane};
 use carom_mesh::generate;
@@ -38,15 +38,13 @@ fn model(n: usize, scheme: Scheme, law: Law) -> Result<Model, Error> {
     let mut block = body(&mesh, "block", Kinematics::Solid, RUBBER)?;
     block.velocity = [0.0, 0.0, -SPEED];
     let bottom = surface(&mesh, "block.bottom", &block)?;
-    Ok(Model {
+    let dt = 0.5 * SIDE / n as f64 / RUBBER.wave_speed(Plane::Full);
+    let mut model = Model {
         contacts: vec![contact(bottom, plane(2, 1.0), law)],
-        ..Model::new(
-            vec![block],
-            mesh,
-            scheme,
-            0.5 * SIDE / n as f64 / RUBBER.wave_speed(Plane::Full),
-        )
-    })
+        ..Model::new(vec![block], mesh, scheme, dt)
+    };
+    model.nonlinear.iteration.solver = Solver::Direct;
+    Ok(model)
 }
 
 /// The block after its impact.

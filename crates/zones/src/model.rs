@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
 use carom_schemes::Scheme;
-use carom_system::{Adaptive, Model, ModelLink, NodalLoad, Nonlinear, System, sides};
+use carom_system::{Adaptive, Model, ModelLink, NodalLoad, Nonlinear, Solver, System, sides};
 
 /// A group of bodies with its own scheme and step.
 #[derive(Clone, Debug)]
@@ -186,6 +186,11 @@ impl Zoned {
             motion
         });
         let damping = |&body: &usize| whole.damping.get(body).copied().unwrap_or_default();
+        let mut iteration = whole.iteration;
+        if iteration.solver == Solver::Auto {
+            // passes and forces of links solve with a matrix many times in a step
+            iteration.solver = Solver::Direct;
+        }
         Nonlinear {
             loads: loads.cloned().collect(),
             motions: motions.filter(|motion| !motion.nodes.is_empty()).collect(),
@@ -194,7 +199,7 @@ impl Zoned {
             turns: Vec::new(),
             damping: zone.bodies.iter().map(damping).collect(),
             preload: None,
-            iteration: whole.iteration,
+            iteration,
         }
     }
 
