@@ -3,14 +3,15 @@
 //! `cargo bench -p carom-benches --bench algebra`; `CAROM_BENCH_N=32` sets the cells along an edge (24 unless given; n = 32 has 107 811
 //! unknowns and takes minutes). The sweeps and `memory/read` count the same bytes, 8 per entry of the factor: the ratio of
 //! their rates is the part of the memory bandwidth that a sweep reaches. `respond` takes one row per node of a face, as a
-//! contact with a rigid plane does, and counts rows; `factor` counts operations.
+//! contact with a rigid plane does, and counts rows; `factor` counts operations. `iterations` count the bytes that they read and write, of which a
+//! product has half of the matrix.
 
 #[path = "../../crates/algebra/tests/all/block.rs"]
 mod block;
 
 use carom_algebra::{
     reduce,
-    solver::{Cholesky, Response, SparseRow, gram},
+    solver::{Cholesky, Iterative, Response, SparseRow, gram},
 };
 use criterion::{Criterion, Throughput};
 use std::hint::black_box;
@@ -26,6 +27,9 @@ fn main() {
         factor(&mut criterion, &system, &mut solver);
         sweeps(&mut criterion, &mut solver);
         respond(&mut criterion, &mut solver, cells);
+    }
+    if let Ok(mut solver) = Iterative::new(&system.matrix, &system.node) {
+        iterations(&mut criterion, &mut solver, system.matrix.nnz());
     }
     criterion.final_summary();
 }
@@ -76,5 +80,22 @@ fn respond(criterion: &mut Criterion, solver: &mut Cholesky, cells: usize) {
     group.throughput(Throughput::Elements(rows.len() as u64));
     group.bench_function("respond", |bench| bench.iter(|| solver.respond(&rows)));
     group.bench_function("gram", |bench| bench.iter(|| gram(&columns)));
+    group.finish();
+}
+
+fn iterations(criterion: &mut Criterion, solver: &mut Iterative, entries: usize) {
+    const MOST: usize = 10;
+    let load: Vec<f64> = (0..solver.unknowns()).map(|i| (i as f64).sin()).collect();
+    let mut x = vec![0.0; load.len()];
+    let mut group = criterion.benchmark_group("iterations");
+    // half of the entries, and an index for each nine
+    group.throughput(Throughput::Bytes((4 * entries + 2 * entries / 9) as u64));
+    group.bench_function("product", |bench| {
+        bench.iter(|| solver.multiply(&load, &mut x))
+    });
+    group.throughput(Throughput::Bytes((MOST * solver.bytes()) as u64));
+    group.bench_function("ten", |bench| {
+        bench.iter(|| black_box(solver.solve_within(&load, &mut x, (1e-30, MOST)).is_ok()))
+    });
     group.finish();
 }
