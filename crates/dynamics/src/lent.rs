@@ -63,16 +63,34 @@ impl Operators {
         }
     }
 
-    /// Why iterations of the last `begin` did not end, and the first unknown of their part.
+    /// Why iterations of the last `begin` did not end, and the unknown with the largest residual.
     pub(crate) fn failure(&mut self) -> Option<(usize, AlgebraError)> {
-        self.groups
+        let failed = self
+            .groups
             .iter_mut()
             .find_map(|group| match &mut group.operator {
                 Some(Operator::Iterated(iterated)) => {
-                    let cause = iterated.failed.take()?;
-                    Some((group.parts[0].start, cause))
+                    Some((group.place.start, iterated.failed.take()?))
                 }
                 _ => None,
-            })
+            });
+        let (place, cause) = failed?;
+        let worst = match &cause {
+            AlgebraError::Iterations { unknown, .. } => *unknown,
+            _ => 0,
+        };
+        Some((self.unknown_at(place + worst), cause))
+    }
+
+    /// The unknown with this place in the y of `begin`.
+    pub(crate) fn unknown_at(&self, place: usize) -> usize {
+        let mut left = place;
+        for part in self.groups.iter().flat_map(|group| &group.parts) {
+            if left < part.len() {
+                return part.start + left;
+            }
+            left -= part.len();
+        }
+        unreachable!("every place is that of an unknown")
     }
 }

@@ -14,8 +14,11 @@ use crate::dense::DenseCholesky;
 use crate::reduce::dot;
 use crate::{Error, csr::Csr};
 
-/// Iterations without a smaller residual after which rounding lets it fall no further.
+/// Iterations without a smaller residual, near the tolerance, after which rounding lets it fall no further.
 const PATIENCE: usize = 60;
+
+/// Iterations without a smaller residual elsewhere: of matrices with a large condition number it rises for long.
+const PATIENCE_AFAR: usize = 600;
 
 /// Factor of the tolerance up to which a residual that falls no further is a solution.
 const NEAR: f64 = 1e3;
@@ -354,7 +357,8 @@ pub(super) struct Descent {
     first: f64,
     pub(super) least: f64,
     tolerance: f64,
-    patience: usize,
+    /// Iterations since the least.
+    since: usize,
     iterations: usize,
     broken: bool,
 }
@@ -366,7 +370,7 @@ impl Descent {
             first,
             least: first,
             tolerance,
-            patience: PATIENCE,
+            since: 0,
             iterations: 0,
             broken: false,
         }
@@ -379,23 +383,25 @@ impl Descent {
     }
 
     pub(super) fn goes_on(&self) -> bool {
-        !self.broken && self.least > self.tolerance.powi(2) * self.first && self.patience > 0
+        let patience = if self.is_near() {
+            PATIENCE
+        } else {
+            PATIENCE_AFAR
+        };
+        let left = self.least > self.tolerance.powi(2) * self.first;
+        !self.broken && left && self.since < patience
     }
 
     /// Counts an iteration with this square of the residual; whether it is the least, and near enough to the tolerance to be a solution.
     pub(super) fn take(&mut self, square: f64) -> bool {
         self.iterations += 1;
         let better = square < self.least;
-        match better {
-            true => {
-                // a slow fall is a fall
-                if square < 0.99 * self.least {
-                    self.patience = PATIENCE;
-                }
-                self.least = square;
-            }
-            false => self.patience -= 1,
-        }
+        // a slow fall is a fall
+        self.since = match square < 0.99 * self.least {
+            true => 0,
+            false => self.since + usize::from(!better),
+        };
+        self.least = self.least.min(square);
         better && self.is_near()
     }
 

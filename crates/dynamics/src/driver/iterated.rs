@@ -7,6 +7,7 @@ use carom_nonsmooth::Condensed;
 use super::Driver;
 use crate::compliance::Compliance;
 use crate::error::{Error, MeshNode};
+use crate::interface::Failure;
 use crate::operator::Operators;
 
 impl Driver {
@@ -46,20 +47,24 @@ impl Driver {
         let solved = self.interface.solve(&self.candidate_data, problem, factors);
         let saddle = self.saddle.get_mut();
         operators.take_back(saddle.end());
-        if let Err(failure) = solved {
-            return Err(self.interface_error(failure, &self.candidates));
+        match solved {
+            Ok(()) => {}
+            Err(Failure::Singular {
+                cause: cause @ AlgebraError::Iterations { unknown, .. },
+                ..
+            }) => {
+                let unknown = operators.unknown_at(unknown);
+                return Err(self.not_solved(unknown, cause));
+            }
+            Err(failure) => return Err(self.interface_error(failure, &self.candidates)),
         }
         saddle.add_motion(factor, &mut self.vectors.half);
         self.take_forces(factor)
     }
 
-    /// The error of iterations that do not end. `unknown`: the first of the part.
+    /// The error of iterations that do not end. `unknown`: the one with the largest residual.
     pub(super) fn not_solved(&self, unknown: usize, cause: AlgebraError) -> Error {
         let system = &*self.system;
-        let unknown = match &cause {
-            AlgebraError::Iterations { unknown: worst, .. } => unknown + worst,
-            _ => unknown,
-        };
         Error::Factor {
             matrix: "effective matrix",
             node: MeshNode::of(system, system.unknowns.node(unknown)),

@@ -28,6 +28,7 @@ mod direct;
 mod direct_hold;
 mod direct_links;
 mod effective;
+mod factored_step;
 mod far;
 mod floating;
 mod forces;
