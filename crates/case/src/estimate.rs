@@ -8,7 +8,7 @@
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Error, Observer, Stepper, step_count};
+use carom_dynamics::{Error, Observer, Stepper, Work, step_count};
 
 use std::sync::Arc;
 
@@ -52,7 +52,7 @@ pub fn estimate(
         let after = (built.end - impact) / built.system.dt;
         let more = [closed.start - first.start, closed.each - first.each];
         let [start, each] = more.map(|more| more.max(0.0));
-        let share = if closed.iterates { 0.8 } else { 0.5 };
+        let share = if closed.work.products > 0 { 0.8 } else { 0.5 };
         seconds += start + share * each * after;
     }
     Ok(Estimate {
@@ -60,7 +60,7 @@ pub fn estimate(
         steps,
         seconds,
         bytes: largest_memory(),
-        solver: first.solver,
+        solver: solver(&first.work),
     })
 }
 
@@ -73,9 +73,7 @@ struct Trial {
     /// A step after the first, s.
     each: f64,
     steps: u64,
-    solver: Option<&'static str>,
-    /// Whether equations were solved by iterations.
-    iterates: bool,
+    work: Work,
 }
 
 fn trial(
@@ -109,8 +107,7 @@ fn trial(
             steps => (last - start) / (steps - 1) as f64,
         },
         steps: clock.steps,
-        solver: clock.solver,
-        iterates: clock.iterates,
+        work: clock.work,
     })
 }
 
@@ -168,8 +165,17 @@ struct Clock {
     steps: u64,
     first: Option<Instant>,
     last: Option<Instant>,
-    solver: Option<&'static str>,
-    iterates: bool,
+    work: Work,
+}
+
+/// How linear equations were solved; none where there were none.
+fn solver(work: &Work) -> Option<&'static str> {
+    match (work.factorisations, work.products) {
+        (0, 0) => None,
+        (_, 0) => Some("a factor"),
+        (0, _) => Some("iterations"),
+        (_, _) => Some("factors and iterations"),
+    }
 }
 
 impl Observer for Clock {
@@ -178,14 +184,7 @@ impl Observer for Clock {
             self.steps += 1;
             self.last = Some(Instant::now());
             self.first = self.first.or(self.last);
-            let work = run.costs().work;
-            self.iterates = work.products > 0;
-            self.solver = match (work.factorisations, work.products) {
-                (0, 0) => None,
-                (_, 0) => Some("a factor"),
-                (0, _) => Some("iterations"),
-                (_, _) => Some("factors and iterations"),
-            };
+            self.work = run.costs().work;
         }
         Ok(())
     }

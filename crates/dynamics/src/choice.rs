@@ -47,10 +47,8 @@ const TOLERANCE: f64 = 1e-12;
 /// What the matrix of a part serves.
 #[derive(Clone, Copy)]
 pub(crate) struct Use<'a> {
-    /// The part, of a matrix that stays.
+    /// The part, of a matrix that stays the same over steps; none of a tangent, which serves some iterations.
     pub(crate) part: Option<&'a Range<usize>>,
-    /// Whether it stays the same over steps; a tangent serves an iteration.
-    pub(crate) stays: bool,
     /// Whether the matrix has a mass: without, iterations grow with the mesh.
     pub(crate) inertia: bool,
     /// What solves with the other matrices of the system: contact forces between parts want the same for all. None of the first one.
@@ -68,6 +66,42 @@ pub(crate) fn solver_of(operator: &Operator) -> Option<Solver> {
     }
 }
 
+/// How a matrix is solved with.
+pub(crate) enum Chosen {
+    /// A factor in this order.
+    Direct(Ordering),
+    Iterative(Iterative),
+}
+
+/// Chooses what solves with a symmetric positive definite matrix. `nodes`: node of each unknown.
+pub(crate) fn choose(
+    (system, of): (&System, Use),
+    matrix: &Csr,
+    nodes: &[u32],
+) -> Result<Chosen, AlgebraError> {
+    let groups = groups(nodes);
+    let place = |unknown: usize| system.x[nodes[unknown] as usize];
+    let order = || Ordering::new(matrix, &groups, Some(&place));
+    let asked = match (system.nonlinear.iteration.solver, of.others) {
+        (Solver::Auto, Some(same)) => same,
+        (asked, _) => asked,
+    };
+    let few = || matrix.n < FEW || !of.inertia || system.needs_factor().is_some();
+    match asked {
+        Solver::Direct => Ok(Chosen::Direct(order()?)),
+        Solver::Iterative => Ok(Chosen::Iterative(Iterative::new(matrix, &groups)?)),
+        Solver::Auto if few() => Ok(Chosen::Direct(order()?)),
+        Solver::Auto => {
+            let order = order()?;
+            let mut solver = Iterative::new(matrix, &groups)?;
+            match pays(&mut solver, (system, of), order.work()) {
+                true => Ok(Chosen::Iterative(solver)),
+                false => Ok(Chosen::Direct(order)),
+            }
+        }
+    }
+}
+
 /// An operator of a symmetric positive definite matrix; unknowns marked `fixed` are taken out. `nodes`: node of each unknown.
 pub(crate) fn operator(
     (system, of): (&System, Use),
@@ -76,30 +110,19 @@ pub(crate) fn operator(
     nodes: &[u32],
 ) -> Result<Operator, AlgebraError> {
     let matrix = matrix.with_identity(fixed);
-    let groups = groups(nodes);
+    let solver = match choose((system, of), &matrix, nodes)? {
+        Chosen::Direct(order) => {
+            let factor = Cholesky::ordered(&matrix, order)?;
+            return Ok(Operator::Factored(Box::new(factor)));
+        }
+        Chosen::Iterative(solver) => solver,
+    };
     let place = |unknown: usize| system.x[nodes[unknown] as usize];
-    let asked = match (system.nonlinear.iteration.solver, of.others) {
-        (Solver::Auto, Some(same)) => same,
-        (asked, _) => asked,
-    };
-    let few = matrix.n < FEW || !of.inertia;
-    if asked == Solver::Direct || asked == Solver::Auto && (few || system.needs_factor().is_some())
-    {
-        return factor(&matrix, Ordering::new(&matrix, &groups, Some(&place))?);
-    }
-    let order = match asked {
-        Solver::Auto => Some(Ordering::new(&matrix, &groups, Some(&place))?),
-        Solver::Direct | Solver::Iterative => None,
-    };
-    let mut solver = Iterative::new(&matrix, &groups)?;
-    match order {
-        Some(order) if !pays(&mut solver, (system, of), order.work()) => factor(&matrix, order),
-        _ => Ok(Operator::Iterated(Iterated {
-            solver: Some(Box::new(solver.on(of.ranks, (&matrix, place))?)),
-            tolerance: TOLERANCE,
-            failed: None,
-        })),
-    }
+    Ok(Operator::Iterated(Iterated {
+        solver: Some(Box::new(solver.on(of.ranks, (&matrix, place))?)),
+        tolerance: TOLERANCE,
+        failed: None,
+    }))
 }
 
 /// The operator of the matrix of a part, or the error that names its first node.
@@ -115,18 +138,13 @@ pub(crate) fn solvable(
         .map_err(|cause| unsolvable(system, part, (matrix, cause)))
 }
 
-fn factor(matrix: &Csr, order: Ordering) -> Result<Operator, AlgebraError> {
-    let factor = Cholesky::ordered(matrix, order)?;
-    Ok(Operator::Factored(Box::new(factor)))
-}
-
 /// Whether iterations are predicted to cost less than a factor of so many entries, made with so many operations.
-pub(crate) fn pays(
+fn pays(
     solver: &mut Iterative,
     (system, of): (&System, Use),
     [entries, operations]: [f64; 2],
 ) -> bool {
-    let uses = if of.stays { STEPS } else { ITERATIONS };
+    let uses = of.part.map_or(ITERATIONS, |_| STEPS);
     let solves = SOLVES * uses;
     let columns = of.part.map_or(0, |part| closing(system, part));
     // each use of a factor reads it twice, whatever its contacts

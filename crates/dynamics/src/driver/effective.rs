@@ -432,7 +432,6 @@ fn linear_part(
     }
     let of = Use {
         part: Some(part),
-        stays: true,
         inertia: map.inertia.x != 0.0,
         others,
         ranks,

@@ -119,7 +119,6 @@ impl Matrices {
                 other => {
                     let of = Use {
                         part: None,
-                        stays: false,
                         inertia: at.maps.all().iter().all(|map| map.inertia.x != 0.0),
                         others: self.solver,
                         ranks: &self.ranks,
