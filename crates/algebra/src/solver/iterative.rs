@@ -155,7 +155,7 @@ impl Iterative {
     /// A block on the diagonal that is not positive definite or not finite; [`Error::Engine`].
     pub fn renew(&mut self, matrix: &Csr) -> Result<(), Error> {
         self.inverses = inverses(matrix, self.size)?;
-        self.matrix = SymmetricBlocks::new(matrix, self.size);
+        self.matrix.renew(matrix);
         self.take_engine(matrix)
     }
 

@@ -68,6 +68,16 @@ impl SymmetricBlocks {
         }
     }
 
+    /// Takes the values of another matrix; the pattern too, where it is another.
+    pub(super) fn renew(&mut self, matrix: &Csr) {
+        let size = self.size;
+        let renewed = self.chunks.par_iter_mut();
+        let renewed = renewed.map(|chunk| chunk.take_values(matrix, size));
+        if !renewed.reduce(|| true, |one, other| one && other) {
+            *self = SymmetricBlocks::new(matrix, size);
+        }
+    }
+
     /// Number of chunks.
     pub(super) fn chunks(&self) -> usize {
         self.chunks.len()
@@ -155,32 +165,41 @@ impl Chunk {
             false => (rows.len() + outside.partition_point(|other| other < column)) as u32,
         };
         chunk.places = columns.iter().map(place).collect();
-        chunk.take_values(matrix, (size, &rows), &columns);
         let length = size * (rows.len() + outside.len());
         (chunk.x, chunk.y) = (vec![0.0; length], vec![0.0; length]);
+        chunk.values = vec![0.0; columns.len() * size * size];
         (chunk.rows, chunk.outside) = (rows, outside);
+        chunk.take_values(matrix, size);
         chunk
     }
 
-    fn take_values(&mut self, matrix: &Csr, (size, rows): (usize, &Range<usize>), columns: &[u32]) {
-        self.values = vec![0.0; columns.len() * size * size];
-        for (row, ends) in rows.clone().zip(self.starts.windows(2)) {
+    /// Whether the matrix has no entry outside of the blocks; its values are then taken.
+    fn take_values(&mut self, matrix: &Csr, size: usize) -> bool {
+        self.values.fill(0.0);
+        let own = self.rows.len();
+        let column = |place: u32| match (place as usize).checked_sub(own) {
+            None => self.rows.start + place as usize,
+            Some(outside) => self.outside[outside] as usize,
+        };
+        for (row, ends) in self.rows.clone().zip(self.starts.windows(2)) {
             let (begin, end) = (ends[0] as usize, ends[1] as usize);
             for i in 0..size {
                 let (all, values) = matrix.row(size * row + i);
                 let mut block = begin;
-                for (&j, &value) in all.iter().zip(values) {
-                    let column = j / size as u32;
-                    if (column as usize) < row {
-                        continue;
-                    }
-                    while block < end && columns[block] < column {
+                let right = all.partition_point(|j| (*j as usize) < size * row);
+                for (&j, &value) in all[right..].iter().zip(&values[right..]) {
+                    let wanted = j as usize / size;
+                    while block < end && column(self.places[block]) < wanted {
                         block += 1;
+                    }
+                    if block == end || column(self.places[block]) != wanted {
+                        return false;
                     }
                     self.values[(block * size + i) * size + j as usize % size] = value;
                 }
             }
         }
+        true
     }
 
     /// y = A x of the own blocks.

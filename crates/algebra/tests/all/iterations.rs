@@ -224,3 +224,24 @@ fn blocks_are_those_of_nodes_or_what_nodes_have_in_common() {
         assert!(distance(&solution(node), &reference) < 1e-10);
     }
 }
+
+#[test]
+fn a_renewed_matrix_is_the_new_one_with_its_pattern_or_another() {
+    let first = block(5, 0.5);
+    let mut held = vec![false; first.matrix.n];
+    held[40..60].fill(true);
+    // other values, fewer entries, and those of the first again
+    let fewer = first.matrix.with_identity(&held).into_owned();
+    let x = Random(39).vector(first.matrix.n);
+    let mut solver = Iterative::new(&fewer, &first.node).unwrap();
+    for matrix in [&block(5, 2.0).matrix, &fewer, &first.matrix] {
+        solver.renew(matrix).unwrap();
+        let product = |solver: &mut Iterative| {
+            let mut y = vec![0.0; x.len()];
+            solver.multiply(&x, &mut y);
+            y
+        };
+        let mut made = Iterative::new(matrix, &first.node).unwrap();
+        assert!(product(&mut solver) == product(&mut made));
+    }
+}
