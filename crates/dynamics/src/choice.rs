@@ -70,7 +70,7 @@ pub(crate) fn solver_of(operator: &Operator) -> Option<Solver> {
 pub(crate) enum Chosen {
     /// A factor in this order.
     Direct(Ordering),
-    Iterative(Iterative),
+    Iterative(Box<Iterative>),
 }
 
 /// Chooses what solves with a symmetric positive definite matrix. `nodes`: node of each unknown.
@@ -89,13 +89,15 @@ pub(crate) fn choose(
     let few = || matrix.n < FEW || !of.inertia || system.needs_factor().is_some();
     match asked {
         Solver::Direct => Ok(Chosen::Direct(order()?)),
-        Solver::Iterative => Ok(Chosen::Iterative(Iterative::new(matrix, &groups)?)),
+        Solver::Iterative => Ok(Chosen::Iterative(Box::new(Iterative::new(
+            matrix, &groups,
+        )?))),
         Solver::Auto if few() => Ok(Chosen::Direct(order()?)),
         Solver::Auto => {
             let order = order()?;
             let mut solver = Iterative::new(matrix, &groups)?;
             match pays(&mut solver, (system, of), order.work()) {
-                true => Ok(Chosen::Iterative(solver)),
+                true => Ok(Chosen::Iterative(Box::new(solver))),
                 false => Ok(Chosen::Direct(order)),
             }
         }
