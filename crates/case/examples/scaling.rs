@@ -13,7 +13,7 @@
 use std::time::Instant;
 
 use carom_case::{Input, build, parse, run_on_ranks};
-use carom_dynamics::{Error, Observer, Stepper};
+use carom_dynamics::{Error, Observer, Scope, Stepper};
 use carom_ranks::{Ranks, threads};
 
 type Anyhow<T> = Result<T, Box<dyn std::error::Error + Send + Sync>>;
@@ -33,8 +33,8 @@ impl Observer for Clock {
     }
 
     /// No state is gathered for the clock.
-    fn looks(&self, _: &dyn Stepper) -> bool {
-        false
+    fn looks(&self, _: &dyn Stepper) -> Scope {
+        Scope::Watched
     }
 }
 

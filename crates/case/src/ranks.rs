@@ -130,6 +130,7 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
     let counts = [
         own.elements as u64,
         own.nodes as u64,
+        own.points as u64,
         own.halo_bytes,
         ranks.sent_bytes(),
     ];
@@ -138,8 +139,9 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
     RankShare {
         elements: most[0] as usize,
         nodes: most[1] as usize,
-        halo_bytes: most[2] as u64,
-        sent_bytes: most[3] as u64,
+        points: most[2] as usize,
+        halo_bytes: most[3] as u64,
+        sent_bytes: most[4] as u64,
         shared_nodes: own.shared_nodes,
     }
 }

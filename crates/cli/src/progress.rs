@@ -1,6 +1,6 @@
 //! The progress of a run on a terminal: time left, simulated time, energy residual.
 
-use carom_dynamics::{Error, Observer, Stepper};
+use carom_dynamics::{Error, Observer, Scope, Stepper};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Parts of the simulated time that the bar counts.
@@ -47,8 +47,8 @@ impl Observer for Progress {
         Ok(())
     }
 
-    fn looks(&self, _: &dyn Stepper) -> bool {
-        false
+    fn looks(&self, _: &dyn Stepper) -> Scope {
+        Scope::Watched
     }
 
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), Error> {

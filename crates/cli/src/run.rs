@@ -237,6 +237,7 @@ fn busiest(share: &RankShare) -> String {
     let RankShare {
         elements,
         nodes,
+        points,
         halo_bytes,
         sent_bytes,
         shared_nodes: shared,
@@ -260,7 +261,7 @@ fn busiest(share: &RankShare) -> String {
         (None, _) => format!("planes ({} shared nodes)", shared.by_planes),
     };
     format!(
-        "ranks: at most {elements} elements and {nodes} nodes each, shared out by {by}; {halo_bytes} bytes sent a step and {:.3} MB in all",
+        "ranks: at most {elements} elements, {nodes} nodes and {points} contact points each, shared out by {by}; {halo_bytes} bytes sent a step and {:.3} MB in all",
         *sent_bytes as f64 / 1e6
     )
 }

@@ -119,6 +119,7 @@ impl Contact {
                     step: None,
                     inside: &|_| false,
                     initial: &Pairing::default(),
+                    own: None,
                 };
                 self.pair_near(places, &mut search, &near, &mut pairing);
             }

@@ -43,6 +43,8 @@ pub(crate) struct Rest {
     wakes: Vec<f64>,
     /// The least of each block.
     least: Vec<f64>,
+    /// The points that are looked at, ascending; none for all.
+    own: Option<Vec<u32>>,
 }
 
 impl Rest {
@@ -51,26 +53,28 @@ impl Rest {
         self.wakes.len() == points && !self.nodes.is_empty()
     }
 
-    /// Begins with the nodes of both sides, each once. `spread`: the most that Σ |N_a| is on their faces; `target`: displacement of an
-    /// obstacle, m.
+    /// Begins with the nodes of both sides, each once. `own`: the points that are looked at, ascending, none for all; `spread`: the most
+    /// that Σ |N_a| is on their faces; `target`: displacement of an obstacle, m.
     pub(crate) fn begin(
-        points: usize,
-        nodes: Vec<u32>,
-        spread: f64,
+        (points, own): (usize, Option<&[u32]>),
+        (nodes, spread): (Vec<u32>, f64),
         places: &Places,
         target: Option<[f64; 3]>,
     ) -> Rest {
-        Rest {
+        let mut rest = Rest {
             places: nodes.iter().map(|&node| places.of(node)).collect(),
             nodes,
             spread,
             // nothing is known of the step before
             motion: f64::INFINITY,
             target: target.unwrap_or_default(),
-            wakes: vec![f64::NEG_INFINITY; points],
-            least: vec![f64::NEG_INFINITY; points.div_ceil(BLOCK)],
+            wakes: vec![f64::INFINITY; points],
+            least: vec![f64::INFINITY; points.div_ceil(BLOCK)],
+            own: own.map(<[u32]>::to_vec),
             ..Rest::default()
-        }
+        };
+        rest.wake_all();
+        rest
     }
 
     /// Takes the places of a pairing: bounds the motion since the last one. `target`: displacement of an obstacle now, m.
@@ -110,8 +114,20 @@ impl Rest {
 
     /// Lets all points be looked at.
     pub(crate) fn wake_all(&mut self) {
-        self.wakes.fill(f64::NEG_INFINITY);
-        self.least.fill(f64::NEG_INFINITY);
+        let Some(own) = &self.own else {
+            self.wakes.fill(f64::NEG_INFINITY);
+            self.least.fill(f64::NEG_INFINITY);
+            return;
+        };
+        for &point in own {
+            self.wakes[point as usize] = f64::NEG_INFINITY;
+            self.least[point as usize / BLOCK] = f64::NEG_INFINITY;
+        }
+    }
+
+    /// Largest motion of a node in the last pairing, what all share included, m; infinite in the first.
+    pub(crate) fn motion(&self) -> f64 {
+        self.motion
     }
 
     /// Gap within which a point may touch now, where the last pairing was one step before, m; at most `most` (m).
@@ -119,8 +135,8 @@ impl Rest {
     /// Nodes of both sides have moved by at most the motion m in the step, so that a gap has changed by 2 m. Laws look one step
     /// ahead or two, by 4 m; the motion of a step is less than twice that of the step before it but for bodies that begin to
     /// move, for which there is a least reach.
-    pub(crate) fn reach(&self, most: f64) -> f64 {
-        (MOTIONS * self.motion).clamp(LEAST * most, most)
+    pub(crate) fn reach(motion: f64, most: f64) -> f64 {
+        (MOTIONS * motion).clamp(LEAST * most, most)
     }
 
     /// The gap that points at rest are to be beyond, m: at least a reach, and more by a factor of 2 to 8, so that it stays for many steps; at

@@ -110,6 +110,11 @@ impl Search {
         self.rest = Rest::default();
     }
 
+    /// The most that a node of the contact has moved from one pairing of near points to the last, m; infinite where there was one alone.
+    pub fn motion(&self) -> f64 {
+        self.rest.motion()
+    }
+
     /// Counts queries and projections from here on.
     pub(crate) fn begin(&mut self) {
         (self.next, self.scratch.projections) = (0, 0);

@@ -180,6 +180,7 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
             }),
             inside: &|point| gaps[point] < 0.0,
             initial: &initial,
+            own: None,
         };
         contact.pair_near(&places, &mut search, &given, &mut near);
         seen.projections[0] += search.projections();
@@ -360,6 +361,7 @@ fn sheets_that_fly_together_are_looked_at_once() {
             step: None,
             inside: &|_| false,
             initial: &Pairing::default(),
+            own: None,
         };
         contact.pair_near(&places, &mut search, &given, &mut near);
         // the drift is that of the step before: in the second step nothing is known of it, in the third all are looked at again
@@ -406,6 +408,7 @@ fn near_points_have_the_same_bits_on_any_number_of_threads() {
                     step: None,
                     inside: &|_| true,
                     initial: &Pairing::default(),
+                    own: None,
                 };
                 contact.pair_near(&places, &mut search, &given, &mut near);
                 let tangents = near.tangents.clone();

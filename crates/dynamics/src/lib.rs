@@ -59,7 +59,7 @@ pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use load_forces::load_forces;
 pub use march::{
-    FailedProblem, Going, Observer, Outcome, Stepper, go_on, is_at_end, march, step_count,
+    FailedProblem, Going, Observer, Outcome, Scope, Stepper, go_on, is_at_end, march, step_count,
 };
 pub use moment::moment;
 pub use on_ranks::OnRanks;

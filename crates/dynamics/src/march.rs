@@ -38,9 +38,30 @@ pub trait Stepper {
     fn agree(&mut self, own: Going) -> Going {
         own
     }
-    /// Where several processes take the steps, brings to the first of them what it has to have of the state after a step: the motion of the
-    /// watched nodes, and if it `looks` at more all of it. All ask together.
-    fn bring(&mut self, _looks: bool) {}
+    /// Where several processes take the steps, brings to the first of them what it has to have of the state after a step. All ask together.
+    fn bring(&mut self, _scope: Scope) {}
+}
+
+/// What somebody looks at of a state; each is in those after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Scope {
+    /// The motion of watched nodes, forces, gaps and statuses of contact points there.
+    Watched,
+    /// Forces, gaps and statuses of all contact points.
+    Points,
+    /// All of it.
+    All,
+}
+
+impl Scope {
+    /// From its number.
+    pub(crate) fn of(number: f64) -> Scope {
+        match number {
+            0.0 => Scope::Watched,
+            1.0 => Scope::Points,
+            _ => Scope::All,
+        }
+    }
 }
 
 /// How a run on several ranks goes on.
@@ -114,11 +135,10 @@ pub trait Observer {
     /// # Errors
     /// Whatever keeps it from its work.
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), Error>;
-    /// Whether it is going to look at more of the state than watched nodes, those of contacts, and the report. Asked before
-    /// [`Observer::accepted`] where several processes take the steps; without it the state is known there alone
-    /// ([`StepReport::partial`]).
-    fn looks(&self, _run: &dyn Stepper) -> bool {
-        true
+    /// What it is going to look at beside the report. Asked before [`Observer::accepted`] where several processes take the steps; the
+    /// rest of the state may be that of an earlier step then ([`StepReport::partial`]).
+    fn looks(&self, _run: &dyn Stepper) -> Scope {
+        Scope::All
     }
 }
 
@@ -170,7 +190,7 @@ fn finish(
     observers: &mut [&mut dyn Observer],
     result: Result<Outcome, Error>,
 ) -> Result<Outcome, Error> {
-    run.bring(true);
+    run.bring(Scope::All);
     let mut finished = Ok(());
     for observer in observers {
         finished = finished.and(observer.finish(run));
@@ -214,8 +234,9 @@ pub fn step_count(end: f64, dt: f64) -> u64 {
 }
 
 fn tell(run: &mut dyn Stepper, observers: &mut [&mut dyn Observer]) -> Result<(), Error> {
-    let looks = observers.iter().any(|observer| observer.looks(run));
-    run.bring(looks);
+    let scopes = observers.iter().map(|observer| observer.looks(run));
+    let scope = scopes.max().unwrap_or(Scope::Watched);
+    run.bring(scope);
     let told = observers
         .iter_mut()
         .try_for_each(|observer| observer.accepted(run));

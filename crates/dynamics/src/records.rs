@@ -20,7 +20,7 @@ pub struct Records {
     /// Whether what is assumed small has stayed small.
     pub small: Smallness,
     /// Time at which the force of each contact point ended last, s.
-    opened: Vec<f64>,
+    pub(crate) opened: Vec<f64>,
     /// Whether all elements at the node of each contact point are deleted; empty as long as none is.
     pub(crate) loose: Vec<bool>,
 }
@@ -133,6 +133,15 @@ impl ContactRecord {
         [0, 1, 2].map(|i| self.exchanged[i].get() - self.later * self.last.1[i])
     }
 
+    /// The closings that are counted by point: hasty ones, others, and those of loose points.
+    pub(crate) fn closings_mut(&mut self) -> [&mut u64; 3] {
+        [
+            &mut self.hasty_closings,
+            &mut self.closings,
+            &mut self.loose_closings,
+        ]
+    }
+
     /// Changes of status to a closing that is due: 2 where each point closes once and opens once in an impact. A closing is
     /// not due if the point opened less than four steps ago, or less than a wave needs to pass over four elements: mesh and step
     /// carry nothing that fast. Points whose elements are all deleted are not counted: nothing makes their force begin again but
@@ -161,25 +170,23 @@ impl ContactRecord {
         self.last = force;
     }
 
-    /// Counts the points whose force begins in a step. `opened`: when that of each point ended last, s.
-    /// `loose`: whether the elements of each are deleted, by the number of the point; empty for none.
+    /// Counts those of some points whose force begins in a step. `opened`: when that of each point ended last, s.
+    /// `loose`: whether the elements of each are deleted, empty for none; both by the number of the point.
     fn count_closings(
         &mut self,
         (system, contact): (&System, usize),
-        step: &Step,
+        (step, points): (&Step, impl Iterator<Item = usize>),
         (opened, loose): (&mut [f64], &[bool]),
     ) {
-        let first = system.first_point[contact];
         let ([start, end], [old, new]) = (step.span, step.forces);
         let least = TREMBLE * self.peak_force / step.report.closed.max(1) as f64;
-        for (k, opened) in opened.iter_mut().enumerate() {
-            let point = first + k;
+        for point in points {
             match (old[point] != 0.0, new[point] != 0.0) {
-                (true, false) => *opened = end,
+                (true, false) => opened[point] = end,
                 (false, true) if loose.get(point) == Some(&true) => self.loose_closings += 1,
                 (false, true) => {
                     let soon = RESOLVED * f64::max(end - start, passage(system, contact));
-                    match start - *opened < soon {
+                    match start - opened[point] < soon {
                         true => self.hasty_closings += u64::from(new[point] > least),
                         false => self.closings += 1,
                     }
@@ -211,7 +218,7 @@ pub struct Step<'a> {
     pub report: &'a ContactReport,
     /// Work of the contact's forces and impulses, J.
     pub work: f64,
-    /// Energy lost in crush until its end, J.
+    /// Energy lost in crush, J.
     pub crushed: f64,
     /// Of a projection after the step: impulse in N s, and change of the force that the next step begins with in N; each
     /// as a sum over the points and as a vector on the secondary body.
@@ -265,8 +272,14 @@ impl Records {
             .extend_from_slice(&before.impacts[self.impacts.len()..]);
     }
 
-    /// Adds a step of one contact. `velocities`: at its start and at its end.
-    pub fn add(&mut self, system: &System, contact: usize, step: &Step, velocities: [&[f64]; 2]) {
+    /// Adds a step of one contact. `points`: those of its points whose force may begin or end in the step, and are counted here; `velocities`:
+    /// at its start and at its end.
+    pub fn add(
+        &mut self,
+        (system, contact): (&System, usize),
+        (step, points): (&Step, impl Iterator<Item = usize>),
+        velocities: [&[f64]; 2],
+    ) {
         let (report, dt) = (step.report, step.dt);
         let record = &mut self.contacts[contact];
         let impulse = step.impulse;
@@ -303,8 +316,8 @@ impl Records {
         record.rubbed.add(report.friction_loss);
         record.status_changes += report.status_changes as u64;
         if report.status_changes > 0 {
-            let opened = &mut self.opened[system.points_of(contact)];
-            record.count_closings((system, contact), step, (opened, &self.loose));
+            let known = (&mut self.opened[..], &self.loose[..]);
+            record.count_closings((system, contact), (step, points), known);
         }
         record.mixed = record.mixed.max(report.mixed as u64);
         if report.gap.is_finite() {
@@ -313,8 +326,7 @@ impl Records {
         if report.force > record.peak_force {
             (record.peak_force, record.peak_time) = (report.force, step.span[1]);
         }
-        let crushed = step.crushed - record.energy_crushed;
-        record.energy_crushed = step.crushed;
+        record.energy_crushed += step.crushed;
         let active = report.closed > 0;
         if active {
             record.first_closing.get_or_insert(step.span[0]);
@@ -329,7 +341,7 @@ impl Records {
             impulsive: [0, 1, 2].map(|i| projected.1[i] + carried.1[i]),
             normal: [0, 1, 2].map(|i| dt * report.normal[i] + projected.1[i]),
             work: step.work,
-            crushed,
+            crushed: step.crushed,
             rubbed: report.friction_loss,
         };
         let place = (system, contact);

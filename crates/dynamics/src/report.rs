@@ -28,7 +28,7 @@ pub struct ContactReport {
     pub friction_loss: f64,
     /// Least gap at the end of the step, m; infinite where nothing faces anything.
     pub gap: f64,
-    /// Gap rate at the point of the least gap, m/s.
+    /// Gap rate at the point of the least gap, m/s: the largest of several with the same gap.
     pub rate: f64,
     /// Points with a force.
     pub closed: usize,
@@ -77,7 +77,7 @@ pub struct StepReport {
     /// What the contacts did in the parts of the step, where it has some: the inner steps of zones, the halves of a nonlinear
     /// step that found no equilibrium. A contact of a zone without inner steps does in each part what it does in the step.
     pub samples: Vec<ContactSample>,
-    /// Whether the state is known at watched nodes and those of contacts alone, since other processes have the rest.
+    /// Whether the state is known at watched nodes alone, and contact points where somebody looks at them, since other processes have the rest.
     pub partial: bool,
 }
 

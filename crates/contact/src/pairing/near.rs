@@ -21,6 +21,10 @@ pub struct Near<'a> {
     pub inside: &'a (dyn Fn(usize) -> bool + Sync),
     /// Points of a contact of small sliding where all nodes are at their reference places.
     pub initial: &'a Pairing,
+    /// The points that are looked at, by their numbers in the contact, ascending; the others face nothing, and the nodes of these alone
+    /// are looked at. Of a contact with an obstacle; none for all points. Given some, all within `reach` count: how far others move
+    /// is not known ([`Contact::reach`]).
+    pub own: Option<&'a [u32]>,
 }
 
 /// The step before a pairing of near points, at whose end that is.
@@ -142,12 +146,12 @@ impl Contact {
         };
         search.begin();
         if let Some(Step { start: Some(start) }) = near.step {
-            self.travel(&mut rest, units, start);
+            self.travel(&mut rest, (units, near.own), start);
         }
-        self.travel(&mut rest, units, places);
+        self.travel(&mut rest, (units, near.own), places);
         let most = near.reach;
-        let reach = match near.step {
-            Some(_) if !self.moves() => rest.reach(most),
+        let reach = match (near.step, near.own) {
+            (Some(_), None) => self.reach(rest.motion(), most),
             _ => most,
         };
         let reach = Reach {
@@ -199,6 +203,7 @@ impl Contact {
             step: None,
             inside,
             initial: &Pairing::default(),
+            own: None,
         };
         self.pair_near(places, search, &near, pairing);
     }
@@ -256,8 +261,17 @@ impl Contact {
         radii.fold(0.0, f64::max)
     }
 
+    /// Gap up to which points count in a pairing one step after the last, m: at most `most`. `motion`: the most that a node of either side has
+    /// moved in the step, m ([`Search::motion`]).
+    pub fn reach(&self, motion: f64, most: f64) -> f64 {
+        match self.moves() {
+            true => most,
+            false => Rest::reach(motion, most),
+        }
+    }
+
     /// Bounds the motion since the last pairing.
-    fn travel(&self, rest: &mut Rest, units: usize, places: &Places) {
+    fn travel(&self, rest: &mut Rest, (units, own): (usize, Option<&[u32]>), places: &Places) {
         let obstacle = match &self.target {
             Target::Rigid(obstacle) => Some(obstacle),
             Target::Surface(_) => None,
@@ -266,8 +280,15 @@ impl Contact {
         if rest.is_for(units) {
             rest.travel(places, displacement);
         } else {
-            let (nodes, spread) = self.nodes();
-            *rest = Rest::begin(units, nodes, spread, places, displacement);
+            let (mut nodes, spread) = self.nodes();
+            if let Some(own) = own {
+                let points = own.iter().map(|&point| &self.points[point as usize]);
+                let carriers = points.flat_map(Point::carriers);
+                nodes = carriers.map(|(node, _)| node).collect();
+                nodes.sort_unstable();
+                nodes.dedup();
+            }
+            *rest = Rest::begin((units, own), (nodes, spread), places, displacement);
         }
         // no bound is known of what turns
         if obstacle.is_some_and(|obstacle| obstacle.motion.turn.is_some()) {

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::shared::Own;
 use crate::system::System;
 
 /// Gap up to which a point is near, over the mean diagonal of the faces. In a stable step a wave crosses no more than the height of
@@ -11,8 +12,12 @@ const REACH: f64 = 0.25;
 /// The points of an attempt.
 #[derive(Default)]
 pub(super) struct Active {
-    /// Whether they are all.
+    /// Whether they are all that this process has.
     all: bool,
+    /// The points that it has, ascending; none for all.
+    own: Option<Vec<u32>>,
+    /// The same of each contact.
+    own_of: Vec<Own>,
     /// Otherwise these, ascending.
     points: Vec<u32>,
     /// Near points of the step before.
@@ -31,6 +36,8 @@ impl Active {
         let contacts = system.contacts.iter().zip(&system.secondary_faces);
         Active {
             all: true,
+            own: None,
+            own_of: vec![Own::All; system.contacts.len()],
             points: Vec::new(),
             before: Vec::new(),
             reaches: contacts
@@ -42,6 +49,29 @@ impl Active {
         }
     }
 
+    /// Leaves the points that this process does not have to others.
+    pub(super) fn keep_own(&mut self, system: &System, own_of: Vec<Own>) {
+        let mut own = Vec::new();
+        for (contact, of) in own_of.iter().enumerate() {
+            let points = system.points_of(contact);
+            match of {
+                Own::All => own.extend(points.map(|point| point as u32)),
+                Own::Some(some) => own.extend(some.iter().map(|point| points.start as u32 + point)),
+            }
+        }
+        (self.own, self.own_of) = (Some(own), own_of);
+    }
+
+    /// Which points of a contact this process has.
+    pub(super) fn own_of(&self, contact: usize) -> &Own {
+        &self.own_of[contact]
+    }
+
+    /// Points that this process has, where others have some.
+    pub(super) fn own_points(&self) -> usize {
+        self.own.as_ref().map_or(0, Vec::len)
+    }
+
     /// Whether nothing is known of the step before.
     pub(super) fn begins(&self) -> bool {
         self.begins
@@ -49,10 +79,16 @@ impl Active {
 
     /// Those of a range, ascending.
     pub(super) fn within(&self, range: Range<usize>) -> impl Iterator<Item = usize> + '_ {
-        let place = |end: usize| self.points.partition_point(|&point| (point as usize) < end);
-        let (all, list) = match self.all {
-            true => (range, &[][..]),
-            false => (0..0, &self.points[place(range.start)..place(range.end)]),
+        let list = match self.all {
+            true => self.own.as_ref(),
+            false => Some(&self.points),
+        };
+        let (all, list) = match list {
+            None => (range, &[][..]),
+            Some(list) => {
+                let place = |end: usize| list.partition_point(|&point| (point as usize) < end);
+                (0..0, &list[place(range.start)..place(range.end)])
+            }
         };
         all.chain(list.iter().map(|&point| point as usize))
     }

@@ -223,7 +223,7 @@ impl Driver {
             false => weights.clone(),
         };
         let friction = self.friction_work(&of_contact);
-        let obstacles = self.obstacle_work(&of_contact);
+        let obstacles = self.obstacle_work(&of_contact, &|contact| self.pushed(contact));
         let own_before = self.own_energy_at_the_start(&identity);
         let own_after = self.own_energies(End::Finish, &identity, self.stored.strain);
         let mut works = std::mem::take(&mut self.works);

@@ -91,6 +91,8 @@ impl Driver {
         let sums = direct.total(self.system.axisymmetric);
         self.report_supports(loads, &|_| true);
         self.know_end(&sums, direct);
+        self.end_points();
+        self.report_contacts();
         self.end_directly(&sums, direct);
         self.phases.balance += begin.elapsed();
         Ok(())
@@ -113,9 +115,8 @@ impl Driver {
         direct.clean = true;
     }
 
-    /// Points, balance and records of the end.
+    /// Balance and records of the end, from what was reported of the contacts.
     pub(super) fn end_directly(&mut self, sums: &Sums, direct: &Direct) {
-        self.end_points();
         self.balance_directly(sums, direct);
         self.record_links();
         self.record_contacts();
@@ -354,7 +355,7 @@ impl Driver {
     }
 
     /// Gaps, rates and memories of the contact points.
-    fn end_points(&mut self) {
+    pub(super) fn end_points(&mut self) {
         // the unknown is the acceleration
         std::mem::swap(&mut self.vectors.x, &mut self.next.motion.a);
         self.end_interface();
@@ -372,7 +373,9 @@ impl Driver {
         let forces = [&old.link_force[..], &new.link_force];
         let links = direct.links.work(weights[0], forces, [&old.u, &new.u]);
         let link_norm = direct.links.norm(&new.link_force);
-        let (friction, obstacles) = (self.friction_work(&weights), self.obstacle_work(&weights));
+        let of_contacts = self.of_contacts.iter();
+        let friction = -of_contacts.map(|of| of.report.friction_loss).sum::<f64>();
+        let obstacles = self.obstacle_work(&weights, &|contact| self.of_contacts[contact].pushed);
         let [inertia, internal, load, touch, beside] = sums.works;
         let stored = self.stored;
         let energies = Energies {

@@ -65,10 +65,14 @@ struct Side {
 }
 
 impl Far {
-    pub(super) fn of(system: &System) -> Far {
+    /// Of the contacts that a process has; the places of the nodes of others are not known to it.
+    pub(super) fn of(system: &System, has: impl Fn(usize) -> bool) -> Far {
         let mut far = Far::default();
         for number in 0..system.contacts.len() {
-            let reach = far.reach_of(system, number);
+            let reach = match has(number) {
+                true => far.reach_of(system, number),
+                false => None,
+            };
             far.contacts.push(reach);
         }
         for side in &mut far.sides {

@@ -107,6 +107,7 @@ use linking::Multipliers;
 use mixing::Mixing;
 use paired::Manner;
 pub use ranked::RankShare;
+pub(crate) use record::OfContact;
 use refined::Refined;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
@@ -196,6 +197,8 @@ pub struct Driver {
     state: State,
     next: State,
     report: StepReport,
+    /// What the points of each contact did in the attempt: those of this process, then of all.
+    of_contacts: Vec<OfContact>,
     /// Room for nodal forces of a contact whose moment is reported, N.
     nodal: Vec<f64>,
     /// Forces of the named supports in the last attempt.

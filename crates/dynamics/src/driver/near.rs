@@ -11,6 +11,7 @@ use carom_contact::{Near, Pairing, Places, Sliding, Step};
 use super::Driver;
 use super::deletion::as_left;
 use super::tangents::first_thought;
+use crate::shared::Own;
 use crate::step_map::Row;
 
 impl Driver {
@@ -62,6 +63,11 @@ impl Driver {
             as_left(&self.bared, &system, number),
             system.first_point[number],
         );
+        let own = match self.active.own_of(number) {
+            Own::All => None,
+            Own::Some(own) if own.is_empty() => return,
+            Own::Some(own) => Some(&own[..]),
+        };
         let time = self.state.time + self.paired_after(number);
         let (row, map) = (
             self.paired_at(number).row(self.maps.first()),
@@ -113,6 +119,7 @@ impl Driver {
             step,
             inside: &|point| gaps[first + point] < 0.0,
             initial,
+            own,
         };
         contact.pair_near(&places, search, &near, pairing);
     }

@@ -53,13 +53,17 @@ impl Driver {
     }
 
     /// Work in J of the obstacles in the step: their forces, old and new with these weights by zone, times their way, and the power
-    /// of their turn times the step.
-    pub(super) fn obstacle_work(&self, weights: &[[f64; 2]]) -> f64 {
+    /// of their turn times the step. `pushed`: what [`Driver::pushed`] tells of each.
+    pub(super) fn obstacle_work(
+        &self,
+        weights: &[[f64; 2]],
+        pushed: &dyn Fn(usize) -> Pushed,
+    ) -> f64 {
         let of = |contact: usize| {
             let way = self.way_of_obstacle(contact)?;
             let weights = weights[self.system.zone_of(contact)];
             let old = self.state.records.contacts[contact].pushed;
-            let pushed = [old, self.pushed(contact)];
+            let pushed = [old, pushed(contact)];
             let work = |pushed: &Pushed| dot(&pushed.force, &way) + self.dt * pushed.turn;
             Some(weights[0] * work(&pushed[0]) + weights[1] * work(&pushed[1]))
         };

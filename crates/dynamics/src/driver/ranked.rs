@@ -1,6 +1,6 @@
 //! Explicit steps that several processes take together.
 //!
-//! Each rank computes the forces of its own elements and the motion of their nodes. The first one has the contacts: it knows the motion
+//! Each rank computes the forces of its own elements and the motion of their nodes, and its own contact points: it knows the motion
 //! of their nodes and the sums of the forces there, and gives the contact forces to the ranks whose elements have these nodes. Sums
 //! over all ranks end the step, with what went wrong on any of them: all take the step, or none.
 
@@ -11,10 +11,14 @@ use carom_bodies::{Distortion, Extreme, Share};
 use carom_ranks::Ranks;
 
 use super::Driver;
+use super::far::Far;
 use super::leapfrog::Direct;
+use super::record::OfContact;
 use crate::error::Error;
-use crate::march::Going;
-use crate::shared::{Shared, SharedNodes, Told, partition_of};
+use crate::march::{Going, Scope};
+use crate::records::ContactRecord;
+use crate::shared::{Own, Shared, SharedNodes, Told, partition_of};
+use crate::small::Largest;
 use crate::update::Sums;
 
 /// What one of several ranks has of a run, and sends to others.
@@ -24,6 +28,8 @@ pub struct RankShare {
     pub elements: usize,
     /// Nodes whose motion it computes, those included that others compute too.
     pub nodes: usize,
+    /// Contact points that it computes.
+    pub points: usize,
     /// Bytes that it sends in each step, by the count of these nodes.
     pub halo_bytes: u64,
     /// Bytes that it has sent so far: with what the first rank is given where impacts begin or end, and where somebody looks.
@@ -55,7 +61,15 @@ impl Driver {
         shared.take_looks(&system, &self.state.shapes.looks);
         if !shared.is_first() {
             self.state.shapes.looks = Vec::new();
+            // what was counted so far is the first rank's
+            let records = &mut self.state.records.contacts;
+            let counts = records.iter_mut().flat_map(ContactRecord::closings_mut);
+            counts.for_each(|count| *count = 0);
         }
+        let own = shared.own_points(&system);
+        let has = |contact: usize| own[contact] == Own::All;
+        self.far = Far::of(&system, has);
+        self.active.keep_own(&system, own);
         direct.blocks = shared.blocks(&system);
         direct.sums = vec![Sums::default(); direct.blocks.len()];
         self.shared = Some(Box::new(shared));
@@ -86,7 +100,8 @@ impl Driver {
         Some(RankShare {
             elements: elements.map(|share| share.places().len()).sum(),
             nodes: shared.halo.present.len(),
-            halo_bytes: shared.halo.bytes(self.system.dim, shared.ranks.rank()),
+            points: self.active.own_points(),
+            halo_bytes: shared.halo.bytes(self.system.dim),
             sent_bytes: shared.ranks.sent_bytes(),
             shared_nodes: shared.shared_nodes,
         })
@@ -106,11 +121,9 @@ impl Driver {
         let forced = self.forces_on_ranks(shared, direct);
         let loads = self.loads_of_end(direct.loaded);
         let mut failed = forced.err();
-        if shared.is_first() {
-            self.follow_interface();
-            if failed.is_none() {
-                failed = self.touch(direct, loads).err();
-            }
+        self.follow_interface();
+        if failed.is_none() {
+            failed = self.touch(direct, loads).err();
         }
         let forces = &mut self.next.motion.contact_force;
         shared.pass_contact_forces(dim, forces, |node| direct.touch(node));
@@ -120,27 +133,68 @@ impl Driver {
         direct.sum_parts();
         let rank = shared.ranks.rank();
         self.report_supports(loads, &|node| shared.halo.counts(node, rank));
+        self.end_points();
+        self.report_own_contacts();
+        let mut contacts = std::mem::take(&mut self.of_contacts);
+        let energies = (&mut self.stored, &mut self.reactions[..]);
+        let parts = &mut direct.parts[..];
         let told = Told {
             failed: failed.is_some(),
-            event: shared.is_first() && self.impacts_change(),
+            passes: match self.candidates.is_empty() {
+                true => 0,
+                false => self.interface.passes,
+            },
         };
-        let energies = (&mut self.stored, &mut self.reactions[..]);
-        let told = shared.sum_up(&mut direct.parts, energies, &told);
+        let told = shared.sum_up(parts, energies, &mut contacts, &told);
         if told.failed {
             return Err(of_ranks(&shared.ranks, failed));
         }
+        self.interface.passes = told.passes;
         let sums = direct.total(self.system.axisymmetric);
         self.know_end(&sums, direct);
-        if told.event {
+        self.know_gaps(&mut contacts);
+        shared.sum_contacts(&mut contacts);
+        if self.impacts_change(&contacts) {
             let velocities = [&mut self.state.motion.v[..], &mut self.next.motion.v];
             shared.gather_velocities(dim, velocities);
         }
-        match shared.is_first() {
-            true => self.end_directly(&sums, direct),
-            false => self.next.time = self.state.time + self.dt,
-        }
+        self.of_contacts = contacts;
+        self.end_directly(&sums, direct);
         self.phases.balance += begin.elapsed();
         Ok(())
+    }
+
+    /// What the contact points of this rank did.
+    fn report_own_contacts(&mut self) {
+        self.report_contacts();
+        let map = self.maps.first();
+        for k in 0..self.of_contacts.len() {
+            let in_steps = self.paired_at(k).row(map) == map.displacement;
+            let Own::Some(own) = self.active.own_of(k) else {
+                continue;
+            };
+            let of = &mut self.of_contacts[k];
+            // the record of one rank counts
+            of.passing = Largest::default();
+            of.motion = match (in_steps, own.is_empty()) {
+                (false, _) => f64::INFINITY,
+                (true, true) => 0.0,
+                (true, false) => self.search[k].motion(),
+            };
+        }
+    }
+
+    /// Leaves out gaps beyond what all nodes together look at, and tells what is recorded of contacts of which no point was looked at.
+    fn know_gaps(&self, contacts: &mut [OfContact]) {
+        for (k, of) in contacts.iter_mut().enumerate() {
+            let reach = self.system.contacts[k].reach(of.motion, self.active.reaches[k]);
+            if of.report.gap > reach {
+                of.report.gap = f64::INFINITY;
+            }
+            if !of.near {
+                of.passing = self.state.records.contacts[k].passing;
+            }
+        }
     }
 
     /// Internal forces and histories of the end, at the nodes of this rank.
@@ -159,13 +213,9 @@ impl Driver {
     }
 
     /// Whether an impact of a contact begins or ends in the step.
-    fn impacts_change(&self) -> bool {
-        let forces = &self.next.interface.force;
-        (0..self.system.contacts.len()).any(|contact| {
-            let mut points = self.active.within(self.system.points_of(contact));
-            let active = points.any(|point| forces[point] != 0.0);
-            self.state.records.contacts[contact].changes(active)
-        })
+    fn impacts_change(&self, contacts: &[OfContact]) -> bool {
+        let mut records = self.state.records.contacts.iter().zip(contacts);
+        records.any(|(record, of)| record.changes(of.report.closed > 0))
     }
 
     /// That no entry of the attempt that this rank has is infinite or no number, on any rank.
@@ -193,7 +243,7 @@ impl Driver {
     }
 
     /// See [`Stepper::bring`](crate::Stepper::bring).
-    pub(super) fn bring_on_ranks(&mut self, looks: bool) {
+    pub(super) fn bring_on_ranks(&mut self, scope: Scope) {
         let Some(mut shared) = self.shared.take() else {
             return;
         };
@@ -204,18 +254,21 @@ impl Driver {
             && records.small.is_due(step, &self.state.ledger);
         self.looked = step;
         let looks_before = records.small.looks;
-        let mut said = [f64::from(looks), f64::from(is_due), looks_before as f64].to_vec();
+        let mut said = [
+            f64::from(scope as u8),
+            f64::from(is_due),
+            looks_before as f64,
+        ]
+        .to_vec();
         shared.ranks.broadcast(&mut said);
-        let (looks, is_due) = (said[0] != 0.0, said[1] != 0.0);
-        match looks {
-            true => {
-                shared.gather(dim, &mut self.state.motion);
-                shared.gather_looks(&system, &mut self.state.shapes.looks);
-            }
-            false => shared.watch(dim, &mut self.state.motion),
+        let (scope, is_due) = (Scope::of(said[0]), said[1] != 0.0);
+        shared.bring(dim, scope, &mut self.state);
+        if scope == Scope::All {
+            shared.gather_looks(&system, &mut self.state.shapes.looks);
         }
-        self.report.partial = !looks && shared.is_first();
+        self.report.partial = scope != Scope::All && shared.is_first();
         if is_due {
+            shared.bring_contacts(dim, &mut self.state);
             let u = &self.state.motion.u;
             let found = shared.distortions(u, said[2] as usize + 1);
             if shared.is_first() {

@@ -7,16 +7,35 @@ use carom_contact::Rows;
 use super::Driver;
 use crate::exchange::sum;
 use crate::moment::moment;
-use crate::records::Step;
+use crate::records::{Pushed, Step};
 use crate::report::ContactReport;
 use crate::small::Largest;
 use crate::state::{InterfaceState, State};
 use crate::step_map::Impulse;
-use crate::system::System;
+
+/// What the points of one contact did in a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OfContact {
+    /// Whether any was looked at.
+    pub(crate) near: bool,
+    /// Where several processes may have its points: the most that a node of this one has moved in the step, m; infinite otherwise.
+    pub(crate) motion: f64,
+    pub(crate) report: ContactReport,
+    /// Work of the forces and impulses, J.
+    pub(crate) work: f64,
+    /// Energy lost in crush, J.
+    pub(crate) crushed: f64,
+    pub(crate) pushed: Pushed,
+    /// The record with the step.
+    pub(crate) passing: Largest,
+    /// See [`Step::jump`].
+    pub(crate) jump: [(f64, [f64; 3]); 2],
+}
 
 impl Driver {
     /// Records of the contacts, and what they give to each part.
     pub(super) fn record(&mut self) {
+        self.report_contacts();
         self.record_contacts();
         if !self.maps.is_static() {
             let system = Arc::clone(&self.system);
@@ -28,65 +47,94 @@ impl Driver {
         }
     }
 
-    /// Records of the contacts.
+    /// What the points of the contacts did in the step: those that this process has.
+    pub(super) fn report_contacts(&mut self) {
+        let mut all = std::mem::take(&mut self.of_contacts);
+        let mut nodal = std::mem::take(&mut self.nodal);
+        all.clear();
+        for k in 0..self.system.contacts.len() {
+            let forces = &self.next.interface.force[self.system.points_of(k)];
+            let mixed = self.weak.mixed(k, forces);
+            let mut of = self.of_contact(k, &mut nodal);
+            of.report.mixed = mixed;
+            all.push(of);
+        }
+        (self.of_contacts, self.nodal) = (all, nodal);
+    }
+
+    fn of_contact(&self, k: usize, nodal: &mut Vec<f64>) -> OfContact {
+        let (system, rows, projected) = (&*self.system, &self.pairing.rows, &self.projected);
+        // without inertia forces give no impulse, and closing is no impact
+        let dt = if self.maps.is_static() { 0.0 } else { self.dt };
+        let impulse = self.contact_impulse(k);
+        let (old, new) = (&self.state.interface, &self.next.interface);
+        let points = || self.active.within(system.points_of(k));
+        let mut report = contact_report(points(), rows, [old, new], self.dt);
+        self.report_friction(k, &mut report);
+        report.moment = self.moment_of(k, nodal);
+        report.friction_loss = -self.friction_work_of(k, [impulse.old, impulse.new]);
+        let carried_on = |point: usize| {
+            let changed = old.carried[point] - old.force[point];
+            projected.impulse(point) + dt * impulse.old * changed
+        };
+        report.impulsive = points().map(carried_on).sum();
+        let changed = |point: usize| new.carried[point] - new.force[point];
+        let contact = &system.contacts[k];
+        let crush = |point: usize| {
+            let share = contact.points[point - system.first_point[k]].share;
+            let energy = |crush: f64| share * contact.law.crush_energy(crush);
+            match new.crush[point] == old.crush[point] {
+                true => 0.0,
+                false => energy(new.crush[point]) - energy(old.crush[point]),
+            }
+        };
+        OfContact {
+            near: points().next().is_some(),
+            motion: f64::INFINITY,
+            work: self.contact_work(k) + points().map(|p| projected.work(p)).sum::<f64>(),
+            crushed: points().map(crush).sum(),
+            pushed: self.pushed(k),
+            passing: self.passing(k),
+            jump: [
+                total(points(), rows, |point| projected.impulse(point)),
+                total(points(), rows, changed),
+            ],
+            report,
+        }
+    }
+
+    /// Records of the contacts, from what was reported of them.
     pub(super) fn record_contacts(&mut self) {
         let system = Arc::clone(&self.system);
         self.next.records.follow(&self.state.records);
         self.next.time = self.state.time + self.dt;
-        // without inertia forces give no impulse, and closing is no impact
         let dt = if self.maps.is_static() { 0.0 } else { self.dt };
-        let mut nodal = std::mem::take(&mut self.nodal);
-        for k in 0..system.contacts.len() {
+        let span = [self.state.time, self.next.time];
+        for (k, of) in self.of_contacts.iter().enumerate() {
             let impulse = self.contact_impulse(k);
-            let rows = &self.pairing.rows;
-            let (old, new) = (&self.state.interface, &self.next.interface);
-            let points = || self.active.within(system.points_of(k));
-            let mut report = contact_report(points(), rows, [old, new], self.dt);
-            report.mixed = self.weak.mixed(k, &new.force[system.points_of(k)]);
-            self.report_friction(k, &mut report);
-            report.moment = self.moment_of(k, &mut nodal);
-            report.friction_loss = -self.friction_work_of(k, [impulse.old, impulse.new]);
-            let work = self.contact_work(k);
-            let pushed = self.pushed(k);
-            let (old, rows, projected) =
-                (&self.state.interface, &self.pairing.rows, &self.projected);
-            let carried_on = |point: usize| {
-                let changed = old.carried[point] - old.force[point];
-                projected.impulse(point) + dt * impulse.old * changed
-            };
-            report.impulsive = points().map(carried_on).sum();
-            let span = [self.state.time, self.next.time];
-            let passing = self.passing(k);
             let State {
                 motion,
                 records,
                 interface,
                 ..
             } = &mut self.next;
-            let changed = |point: usize| interface.carried[point] - interface.force[point];
             let step = Step {
                 span,
                 dt,
                 impulse,
-                forces: [&old.force, &interface.force],
-                report: &report,
-                work: work + points().map(|p| projected.work(p)).sum::<f64>(),
-                crushed: match points().all(|p| interface.crush[p] == old.crush[p]) {
-                    true => records.contacts[k].energy_crushed,
-                    false => crush_energy(&system, k, interface),
-                },
-                jump: [
-                    total(points(), rows, |point| projected.impulse(point)),
-                    total(points(), rows, changed),
-                ],
+                forces: [&self.state.interface.force, &interface.force],
+                report: &of.report,
+                work: of.work,
+                crushed: of.crushed,
+                jump: of.jump,
             };
             let velocities = [&self.state.motion.v[..], &motion.v];
-            records.add(&system, k, &step, velocities);
-            records.contacts[k].passing = passing;
-            records.contacts[k].pushed = pushed;
-            self.report.contacts[k] = report;
+            let points = self.active.within(system.points_of(k));
+            records.add((&system, k), (&step, points), velocities);
+            records.contacts[k].passing = of.passing;
+            records.contacts[k].pushed = of.pushed;
+            self.report.contacts[k].clone_from(&of.report);
         }
-        self.nodal = nodal;
         if self.is_shared() {
             // they look once the step is taken, together
             return;
@@ -98,7 +146,7 @@ impl Driver {
     /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
     fn passing(&self, number: usize) -> Largest {
         let system = &*self.system;
-        let mut passing = self.next.records.contacts[number].passing;
+        let mut passing = self.state.records.contacts[number].passing;
         let contact = &system.contacts[number];
         if !contact.may_be_passed() {
             return passing;
@@ -112,7 +160,7 @@ impl Driver {
             if depth > passing.value {
                 let point = &contact.points[point - system.first_point[number]];
                 let node = system.mesh_node[point.node() as usize];
-                passing.take(depth, node, self.next.time);
+                passing.take(depth, node, self.state.time + self.dt);
             }
         }
         passing
@@ -201,7 +249,7 @@ impl Driver {
         }
         self.report.passes = match self.system.is_nonlinear() {
             true => self.residuals.len(),
-            false if self.candidates.is_empty() => 0,
+            false if self.candidates.is_empty() && !self.is_shared() => 0,
             false => self.interface.passes,
         };
         if state.step == 0 {
@@ -215,15 +263,6 @@ impl Driver {
             }
         }
     }
-}
-
-/// Energy that the crush of one contact has taken so far, J: a function of the largest penetrations.
-fn crush_energy(system: &System, contact: usize, interface: &InterfaceState) -> f64 {
-    let (first, contact) = (system.first_point[contact], &system.contacts[contact]);
-    let of_point = |(k, point): (usize, &carom_contact::Point)| {
-        point.share * contact.law.crush_energy(interface.crush[first + k])
-    };
-    contact.points.iter().enumerate().map(of_point).sum()
 }
 
 /// Sum of a normal force or impulse over points of a contact, and its resultant on the secondary body.
@@ -263,8 +302,9 @@ pub fn contact_report(
         for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {
             *sum += force * n;
         }
-        if new.gap[point] < report.gap {
-            (report.gap, report.rate) = (new.gap[point], new.rate[point]);
+        let (gap, rate) = (new.gap[point], new.rate[point]);
+        if gap < report.gap || gap == report.gap && gap.is_finite() && rate > report.rate {
+            (report.gap, report.rate) = (gap, rate);
         }
         report.closed += usize::from(force != 0.0);
         report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));

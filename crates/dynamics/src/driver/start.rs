@@ -109,7 +109,7 @@ impl Driver {
             bared_for: 0,
             watch: Watch::new(&system),
             active: Active::of(&system),
-            far: Far::of(&system),
+            far: Far::of(&system, |_| true),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             free_gaps: Vec::new(),
@@ -129,6 +129,7 @@ impl Driver {
             failed: None,
             failed_friction: None,
             reactions: Vec::new(),
+            of_contacts: Vec::new(),
             nodal: Vec::new(),
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],

@@ -7,7 +7,7 @@ use super::Driver;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
-use crate::march::{FailedProblem, Going, Stepper};
+use crate::march::{FailedProblem, Going, Scope, Stepper};
 use crate::report::StepReport;
 use crate::state::State;
 use crate::system::{Adaptive, System};
@@ -237,7 +237,7 @@ impl Stepper for Driver {
         self.agree_on_ranks(own)
     }
 
-    fn bring(&mut self, looks: bool) {
-        self.bring_on_ranks(looks);
+    fn bring(&mut self, scope: Scope) {
+        self.bring_on_ranks(scope);
     }
 }

@@ -1,11 +1,12 @@
 //! Which nodes a rank has, which of them others have too, and what they send each other.
 //!
-//! A rank *has* the nodes of its elements, and the first one those of the contacts besides. The forces of a node that several have are
+//! A rank *has* the nodes of its elements, and those of the contact points whose [home](super::homes) it is. The forces of a node that several have are
 //! the sums of what their elements give, added in the order of the ranks by each that has it, so that all of them
 //! have the same bits and compute the same motion. Each node counts in the sums of one rank, its *owner*: the first whose elements have it.
 
 use carom_ranks::Message;
 
+use super::homes::Homes;
 use crate::system::System;
 
 /// Nodes, ascending, of a message with another rank.
@@ -27,8 +28,12 @@ pub(crate) struct Halo {
     /// Nodes of which this rank sends forces, by rank, and of which it receives some.
     pub(crate) sends: Vec<With>,
     pub(crate) receives: Vec<With>,
-    /// Nodes of contacts that other ranks have too, by rank: the first rank gives them the forces of the contacts. Of another rank its own.
+    /// Nodes of contacts that several have, by the other rank: those to which the home, this rank, gives the forces of the contacts, and
+    /// those of which it is given them.
+    pub(crate) touches: Vec<With>,
     pub(crate) touched: Vec<With>,
+    /// Where the contacts are.
+    pub(crate) homes: Homes,
 }
 
 /// Ranks of the elements of each body.
@@ -57,44 +62,54 @@ impl Halo {
         }
         further.sort_unstable();
         further.dedup();
-        let contacts = contact_nodes(system);
-        let mut halo = Halo::default();
-        let (mut further, mut contacts) = (&further[..], &contacts[..]);
-        let mut have = Vec::new();
+        let mut owner = first.clone();
+        for [node, part] in &further {
+            let own = &mut owner[*node as usize];
+            *own = (*own).min(*part);
+        }
+        // nodes without elements
+        for owner in owner.iter_mut().filter(|owner| **owner == u32::MAX) {
+            *owner = 0;
+        }
+        let mut halo = Halo {
+            homes: Homes::new(system, &owner),
+            owner,
+            ..Halo::default()
+        };
+        let (mut further, mut have) = (&further[..], Vec::new());
         for node in 0..nodes as u32 {
             have.clear();
             have.extend(Some(first[node as usize]).filter(|rank| *rank != u32::MAX));
-            while let Some(([other, part], rest)) =
-                further.split_first().filter(|(f, _)| f[0] == node)
+            while let Some(([_, part], rest)) = further.split_first().filter(|(f, _)| f[0] == node)
             {
-                debug_assert_eq!(*other, node);
                 have.push(*part);
                 further = rest;
             }
             have.sort_unstable();
-            let touches = contacts.first() == Some(&node);
-            if touches {
-                contacts = &contacts[1..];
-            }
-            halo.owner.push(have.first().copied().unwrap_or(0));
-            halo.take(node, (&have, touches), rank as u32);
+            halo.take(node, &have, rank as u32);
         }
-        for list in [&mut halo.sends, &mut halo.receives, &mut halo.touched] {
+        let lists = [
+            &mut halo.sends,
+            &mut halo.receives,
+            &mut halo.touches,
+            &mut halo.touched,
+        ];
+        for list in lists {
             list.sort_by_key(|with| with.rank);
         }
         halo
     }
 
     /// Takes in a node whose elements are of these ranks.
-    fn take(&mut self, node: u32, (have, touches): (&[u32], bool), rank: u32) {
-        let (own, root) = (have.contains(&rank), rank == 0);
-        let outside = touches && !have.contains(&0);
-        let own_or_touched = own || touches && root;
-        if !(own_or_touched || have.is_empty() && root) {
+    fn take(&mut self, node: u32, have: &[u32], rank: u32) {
+        let home = self.homes.of_node(node as usize);
+        let (own, touches) = (have.contains(&rank), home == Some(rank));
+        let outside = home.filter(|home| !have.contains(home));
+        if !(own || touches || have.is_empty() && rank == 0) {
             return;
         }
         self.present.push(node);
-        if have.len() + usize::from(outside) < 2 {
+        if have.len() + usize::from(outside.is_some()) < 2 {
             return;
         }
         self.shared.push(node);
@@ -103,15 +118,15 @@ impl Halo {
             if own {
                 add(&mut self.sends, other, node);
             }
-            if touches && root {
-                add(&mut self.touched, other, node);
+            if touches {
+                add(&mut self.touches, other, node);
             }
         }
-        if own && outside {
-            add(&mut self.sends, 0, node);
-        }
-        if own && touches && !root {
-            add(&mut self.touched, 0, node);
+        if let Some(home) = home.filter(|_| own && !touches) {
+            if outside.is_some() {
+                add(&mut self.sends, home, node);
+            }
+            add(&mut self.touched, home, node);
         }
     }
 
@@ -120,12 +135,28 @@ impl Halo {
         self.owner[node] as usize == rank
     }
 
-    /// Bytes that this rank sends in a step: forces of elements, and on the first rank those of contacts.
-    pub(crate) fn bytes(&self, dim: usize, rank: usize) -> u64 {
-        let count = |lists: &[With]| lists.iter().map(|with| with.nodes.len()).sum::<usize>();
-        let touched = if rank == 0 { count(&self.touched) } else { 0 };
-        8 * (dim * (count(&self.sends) + touched)) as u64
+    /// Whether the first rank has a node.
+    pub(crate) fn is_on_first(&self, node: usize) -> bool {
+        self.owner[node] == 0 || self.homes.of_node(node) == Some(0)
     }
+
+    /// Bytes that this rank sends in a step: forces of elements, and of the contacts whose home it is.
+    pub(crate) fn bytes(&self, dim: usize) -> u64 {
+        let count = |lists: &[With]| lists.iter().map(|with| with.nodes.len()).sum::<usize>();
+        8 * (dim * (count(&self.sends) + count(&self.touches))) as u64
+    }
+}
+
+/// Lists of what other ranks give to the first, each with the rank that has it: on the first one by that rank, on another its own.
+pub(crate) fn by_rank(given: impl Iterator<Item = (u32, u32)>, rank: usize) -> Vec<With> {
+    let mut lists = Vec::new();
+    for (number, from) in given {
+        if rank == 0 || from as usize == rank {
+            add(&mut lists, if rank == 0 { from } else { 0 }, number);
+        }
+    }
+    lists.sort_by_key(|list| list.rank);
+    lists
 }
 
 fn add(lists: &mut Vec<With>, rank: u32, node: u32) {

@@ -1,11 +1,13 @@
 //! A run that several processes compute together, in explicit steps.
 //!
-//! All ranks have the same [`System`] and vectors of its length, but each computes the forces of its own elements and the motion of their
-//! nodes; other entries are those of some earlier step, and nobody reads them. The first rank has all contacts, the ledger, the
-//! records and the results. What it needs of the others comes with the steps ([`Shared::sum_up`]) or where somebody looks
+//! All ranks have the same [`System`] and vectors of its length, but each computes the forces of its own elements, the motion of their
+//! nodes, and the contact points whose [home](homes) it is; other entries are those of some earlier step, and nobody reads them. Sums over all
+//! ranks end a step ([`Shared::sum_up`]), so that all have the same ledger and records. The first one has the results: what it needs of the others comes where somebody looks
 //! ([`Shared::gather`]).
 
+mod contacts;
 pub(crate) mod halo;
+mod homes;
 mod looks;
 mod parts;
 mod whole;
@@ -14,11 +16,15 @@ use carom_bodies::{Error as BodyError, Looks, Placement, Seen, Share, Stored};
 use carom_ranks::{Message, Ranks};
 
 use crate::blocks::{Block, blocks_of};
+use crate::driver::OfContact;
 use crate::error::Error;
+use crate::march::Scope;
 use crate::resultant::Resultant;
+use crate::state::State;
 use crate::system::{Motion, System};
 use crate::update::Sums;
 use halo::{Halo, messages, pack, unpack};
+pub(crate) use homes::Own;
 use parts::Partition;
 pub use parts::SharedNodes;
 pub(crate) use parts::partition_of;
@@ -34,21 +40,23 @@ pub(crate) struct Shared {
     receives: Vec<Message>,
     /// Forces of this rank's elements on the shared nodes, N.
     own: Vec<f64>,
-    /// Forces of the contacts, from the first rank to the others.
+    /// Forces of the contacts: those that this rank gives to others, and those that it is given.
+    touches: Vec<Message>,
     touched: Vec<Message>,
     /// Numbers that are summed over the ranks, and those of which the largest counts.
     sums: Vec<f64>,
     largest: Vec<f64>,
     whole: whole::Whole,
     looks: looks::SharedLooks,
+    points: contacts::SharedPoints,
 }
 
 /// What a step tells all ranks, beside its sums.
 pub(crate) struct Told {
     /// Whether it has failed on any.
     pub(crate) failed: bool,
-    /// Whether an impact begins or ends in it.
-    pub(crate) event: bool,
+    /// Most passes of an interface problem.
+    pub(crate) passes: usize,
 }
 
 impl Shared {
@@ -84,11 +92,13 @@ impl Shared {
             sends: messages(&halo.sends, dim),
             receives: messages(&halo.receives, dim),
             own: vec![0.0; dim * halo.shared.len()],
+            touches: messages(&halo.touches, dim),
             touched: messages(&halo.touched, dim),
             sums: Vec::new(),
             largest: Vec::new(),
             whole: whole::Whole::new(system, (&halo, rank), watched, &elements),
             looks: looks::SharedLooks::new(&elements, ranks.count()),
+            points: contacts::SharedPoints::new(system, (&halo, rank), watched),
             halo,
             ranks: ranks.clone(),
             shared_nodes: partition.shared,
@@ -200,41 +210,45 @@ impl Shared {
         forces: &mut [f64],
         mut touch: impl FnMut(usize),
     ) {
-        let lists = self.halo.touched.iter().zip(&mut self.touched);
-        if self.ranks.is_first() {
-            for (with, message) in lists {
-                pack(&with.nodes, dim, forces, &mut message.values);
-            }
-            return self.ranks.exchange(&self.touched, &mut [], || ());
+        for (with, message) in self.halo.touches.iter().zip(&mut self.touches) {
+            pack(&with.nodes, dim, forces, &mut message.values);
         }
-        self.ranks.exchange(&[], &mut self.touched, || ());
-        for (with, message) in self.halo.touched.iter().zip(&self.touched) {
+        let received = &mut self.touched;
+        self.ranks.exchange(&self.touches, received, || ());
+        for (with, message) in self.halo.touched.iter().zip(received) {
             unpack(&with.nodes, dim, &message.values, forces);
             let values = message.values.chunks_exact(dim);
-            for (&node, _) in with
-                .nodes
-                .iter()
-                .zip(values)
-                .filter(|(_, f)| f.iter().any(|f| *f != 0.0))
-            {
+            let nodes = with.nodes.iter().zip(values);
+            for (&node, _) in nodes.filter(|(_, f)| f.iter().any(|f| *f != 0.0)) {
                 touch(node as usize);
             }
         }
     }
 
-    /// Brings the motion of the watched nodes to the first rank.
-    pub(crate) fn watch(&mut self, dim: usize, motion: &mut Motion) {
-        self.whole.watch(&self.ranks, dim, motion);
+    /// Of each contact the points of this rank.
+    pub(crate) fn own_points(&self, system: &System) -> Vec<Own> {
+        self.halo.homes.own(system, self.ranks.rank())
+    }
+
+    /// Brings to the first rank what it has to have of a state.
+    pub(crate) fn bring(&mut self, dim: usize, scope: Scope, state: &mut State) {
+        self.points.gather(&self.ranks, scope, state);
+        match scope {
+            Scope::All => self.whole.gather(&self.ranks, dim, &mut state.motion),
+            Scope::Watched | Scope::Points => self.whole.watch(&self.ranks, dim, &mut state.motion),
+        }
+    }
+
+    /// Brings to it what is looked at of contacts: the displacements of their nodes, and their points.
+    pub(crate) fn bring_contacts(&mut self, dim: usize, state: &mut State) {
+        self.points.gather(&self.ranks, Scope::Points, state);
+        let motion = &mut state.motion;
+        self.whole.gather_touched(&self.ranks, dim, motion);
     }
 
     /// Brings the velocities of all nodes at the start and the end of a step to the first rank.
     pub(crate) fn gather_velocities(&mut self, dim: usize, velocities: [&mut [f64]; 2]) {
         self.whole.gather_velocities(&self.ranks, dim, velocities);
-    }
-
-    /// Brings the motion of all nodes and the histories of all elements to the first rank.
-    pub(crate) fn gather(&mut self, dim: usize, motion: &mut Motion) {
-        self.whole.gather(&self.ranks, dim, motion);
     }
 
     /// Takes what is known of the frequencies of the elements of this rank from what is known of all.
@@ -267,18 +281,19 @@ impl Shared {
         looks::fastest((&self.ranks, &self.halo), system, (w, v))
     }
 
-    /// Sums the parts, the energies and the forces of supports of a step over the ranks, and tells whether it has `failed` on any, or an
-    /// impact begins or ends.
+    /// Sums the parts, the energies, the forces of supports and the begin of what contacts did in a step over the ranks, with what it tells.
     pub(crate) fn sum_up(
         &mut self,
         parts: &mut [Sums],
         (stored, supports): (&mut Stored, &mut [Resultant]),
+        contacts: &mut [OfContact],
         told: &Told,
     ) -> Told {
         let Shared {
             sums,
             largest,
             ranks,
+            points,
             ..
         } = self;
         sums.clear();
@@ -291,14 +306,19 @@ impl Shared {
             sums.extend(support.linear.iter().chain(&support.angular));
         }
         sums.extend(energies(stored).map(|energy| *energy));
-        largest.push(stored.compression);
-        largest.extend([told.failed, told.event].map(f64::from));
+        largest.extend([
+            stored.compression,
+            f64::from(told.failed),
+            told.passes as f64,
+        ]);
+        points.begin_sum(contacts, (sums, largest));
         ranks.reduce(sums, largest);
         let (mut sums, mut largest) = (sums.iter().copied(), largest.iter().copied());
         let mut next = || sums.next().unwrap_or_default();
+        let mut most = || largest.next().unwrap_or_default();
         for part in parts {
             part.take(&mut next);
-            part.fastest = largest.next().unwrap_or_default();
+            part.fastest = most();
         }
         for support in supports {
             let entries = support.linear.iter_mut().chain(&mut support.angular);
@@ -307,12 +327,18 @@ impl Shared {
         for energy in energies(stored) {
             *energy = next();
         }
-        stored.compression = largest.next().unwrap_or_default();
-        let mut flag = || largest.next().is_some_and(|flag| flag != 0.0);
-        Told {
-            failed: flag(),
-            event: flag(),
-        }
+        stored.compression = most();
+        let told = Told {
+            failed: most() != 0.0,
+            passes: most() as usize,
+        };
+        contacts::SharedPoints::take_begun(contacts, (&mut next, &mut most));
+        told
+    }
+
+    /// Makes of what the points of this rank did in a step what those of all ranks did. Their least gaps are known.
+    pub(crate) fn sum_contacts(&mut self, contacts: &mut [OfContact]) {
+        self.points.sum(&self.ranks, contacts);
     }
 }
 

@@ -3,7 +3,6 @@
 use carom_ranks::{Graph, Ranks, partition};
 
 use crate::error::Error;
-use crate::shared::halo::contact_nodes;
 use crate::system::System;
 
 /// What an element at finite strain costs over one at small strain, about.
@@ -130,27 +129,6 @@ impl Elements {
         };
         (0..self.at_nodes.0.len() - 1).map(&mut of_node).sum()
     }
-
-    /// Gives the first rank, which has the contacts, the part with most of their nodes.
-    fn give_contacts_to_first(&self, system: &System, parts: &mut [u32], ranks: usize) {
-        let touched = contact_nodes(system);
-        let mut touched_of = vec![0; ranks];
-        for (&part, nodes) in parts.iter().zip(self.each()) {
-            let own = nodes
-                .iter()
-                .filter(|node| touched.binary_search(node).is_ok());
-            touched_of[part as usize] += own.count();
-        }
-        let first = (0..ranks).rev().max_by_key(|&rank| touched_of[rank]);
-        let first = first.unwrap_or(0) as u32;
-        for part in parts {
-            *part = match *part {
-                0 => first,
-                part if part == first => 0,
-                part => part,
-            };
-        }
-    }
 }
 
 /// The rank of each element of each body, the same in every process: parts of equal cost, by planes or, where that shares fewer nodes, by the
@@ -175,7 +153,6 @@ pub(crate) fn partition_of(system: &System, ranks: &Ranks) -> Result<Partition, 
             }
         }
     }
-    elements.give_contacts_to_first(system, &mut parts, count);
     let mut rest = &parts[..];
     let of_bodies = elements.counts.iter().map(|&count| {
         let (own, others) = rest.split_at(count);

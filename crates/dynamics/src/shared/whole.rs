@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use carom_ranks::{Message, Ranks};
 
-use super::halo::{Halo, Parts, With, contact_nodes, pack, unpack};
+use super::halo::{Halo, Parts, With, by_rank, contact_nodes, pack, unpack};
 use crate::system::{Motion, System};
 
 /// Who gives what: on the first rank lists by rank, on another its own.
@@ -12,6 +12,8 @@ use crate::system::{Motion, System};
 pub(super) struct Whole {
     /// Nodes whose motion the first rank has after each step.
     watched: Vec<With>,
+    /// Nodes of contacts that it does not have itself.
+    touched: Vec<With>,
     /// All nodes that it does not have itself.
     all: Vec<With>,
     /// Where the histories of the elements are among those of all bodies.
@@ -26,29 +28,13 @@ impl Whole {
         watched: &[u32],
         parts: &Parts,
     ) -> Whole {
-        let touched = contact_nodes(system);
-        let is_away = |node: &u32| {
-            let owner = halo.owner[*node as usize] as usize;
-            owner != 0 && (rank == 0 || rank == owner) && touched.binary_search(node).is_err()
-        };
         let lists = |nodes: &mut dyn Iterator<Item = u32>| {
-            let mut lists: Vec<With> = Vec::new();
-            for node in nodes.filter(is_away) {
-                let owner = halo.owner[node as usize] as usize;
-                let with = if rank == 0 { owner } else { 0 };
-                match lists.iter_mut().find(|list| list.rank == with) {
-                    Some(list) => list.nodes.push(node),
-                    None => lists.push(With {
-                        rank: with,
-                        nodes: vec![node],
-                    }),
-                }
-            }
-            lists.sort_by_key(|list| list.rank);
-            lists
+            let away = nodes.filter(|node| !halo.is_on_first(*node as usize));
+            by_rank(away.map(|node| (node, halo.owner[node as usize])), rank)
         };
         Whole {
             watched: lists(&mut watched.iter().copied()),
+            touched: lists(&mut contact_nodes(system).into_iter()),
             all: lists(&mut (0..system.x.len() as u32)),
             histories: histories(system, parts, rank),
             room: Vec::new(),
@@ -99,6 +85,12 @@ impl Whole {
         let vectors = &mut [&mut motion.u[..], &mut motion.v, &mut motion.a];
         let Whole { watched, room, .. } = self;
         collect(ranks, (watched, room), dim, vectors);
+    }
+
+    /// Brings the displacements of the nodes of contacts to the first rank.
+    pub(super) fn gather_touched(&mut self, ranks: &Ranks, dim: usize, motion: &mut Motion) {
+        let Whole { touched, room, .. } = self;
+        collect(ranks, (touched, room), dim, &mut [&mut motion.u]);
     }
 
     /// Brings the velocities of all nodes at the start and the end of a step to the first rank.

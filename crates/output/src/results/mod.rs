@@ -47,7 +47,7 @@ mod zoning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Observer, State, StepReport, Stepper, System};
+use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System};
 
 use crate::{Error, Folder, atomic, checkpoint};
 use discrete::DiscretePeaks;
@@ -335,7 +335,7 @@ impl Observer for Results {
         outcome.map_err(Error::of_observer)
     }
 
-    fn looks(&self, run: &dyn Stepper) -> bool {
+    fn looks(&self, run: &dyn Stepper) -> Scope {
         let (time, report) = (run.state().time, run.report());
         let fields = self.fields.as_ref();
         // the stress of a cell is a function of its history
@@ -344,13 +344,18 @@ impl Observer for Results {
             .probes
             .iter()
             .any(|probe| probe.cell.is_some());
-        fields.is_some_and(|fields| fields.wants_all(&self.system, time))
+        let all = fields.is_some_and(|fields| fields.wants_all(&self.system, time))
             || self.stills.wants(time, report).contains(&true)
             || self.instants.wants(report)
             || self
                 .due
                 .is_due(&self.settings.checkpoints, time, self.system.dt)
-            || cells && !run.state().motion.history.is_empty()
+            || cells && !run.state().motion.history.is_empty();
+        match all {
+            true => Scope::All,
+            false if self.raster.wants(report) => Scope::Points,
+            false => Scope::Watched,
+        }
     }
 
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {

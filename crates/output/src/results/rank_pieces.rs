@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use carom_dynamics::{Observer, Stepper, System};
+use carom_dynamics::{Observer, Scope, Stepper, System};
 
 use crate::Error;
 use crate::results::fields::Sent;
@@ -74,7 +74,7 @@ impl Observer for Pieces {
         }
     }
 
-    fn looks(&self, _: &dyn Stepper) -> bool {
-        false
+    fn looks(&self, _: &dyn Stepper) -> Scope {
+        Scope::Watched
     }
 }

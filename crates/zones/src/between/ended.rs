@@ -64,7 +64,9 @@ impl Between {
                 jump: Default::default(),
             };
             let velocities = [&self.start[1][..], &self.end[1]];
-            self.state.records.add(&system, contact, &step, velocities);
+            let points = system.points_of(contact);
+            let of = (&*system, contact);
+            self.state.records.add(of, (&step, points), velocities);
             self.reports[contact] = report;
         }
     }

@@ -89,6 +89,14 @@ impl RasterOf {
         self.end
     }
 
+    /// Whether statuses of points are looked at after a step.
+    pub(crate) fn wants(&self, report: &StepReport) -> bool {
+        let column = column_of(report.time, [self.begin, self.end]);
+        let contacts = report.contacts.iter().zip(&self.last);
+        let mut contacts = contacts.zip(&self.rows).filter(|(_, rows)| **rows > 0);
+        contacts.any(|((report, last), _)| report.status_changes > 0 || *last != Some(column))
+    }
+
     /// Adds the statuses at the end of a step; a contact without a change of status is looked at once for each column.
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
         let column = column_of(report.time, [self.begin, self.end]);

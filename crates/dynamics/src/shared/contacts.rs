@@ -1,0 +1,285 @@
+//! What the contact points of all ranks did in a step, and what the first rank is given of them.
+
+use carom_contact::Point;
+use carom_contact::law::Status;
+use carom_ranks::{Message, Ranks};
+
+use super::halo::{Halo, With, by_rank};
+use crate::driver::OfContact;
+use crate::march::Scope;
+use crate::records::Records;
+use crate::state::{InterfaceState, State};
+use crate::system::System;
+
+/// Numbers of a point that the first rank is given where somebody looks at points, and where the state is to be whole.
+const SEEN: usize = 5;
+const WHOLE: usize = 12;
+
+/// The points of contacts that the first rank does not have: by rank on the first one, and on another its own.
+#[derive(Debug, Default)]
+pub(super) struct SharedPoints {
+    all: Vec<With>,
+    /// Those at watched nodes.
+    watched: Vec<With>,
+    room: Vec<Message>,
+    /// Least gaps of the contacts on this rank, m.
+    gaps: Vec<f64>,
+    sums: Vec<f64>,
+    largest: Vec<f64>,
+}
+
+impl SharedPoints {
+    /// `watched`: nodes.
+    pub(super) fn new(
+        system: &System,
+        (halo, rank): (&Halo, usize),
+        watched: &[u32],
+    ) -> SharedPoints {
+        let mut watched = watched.to_vec();
+        watched.sort_unstable();
+        let is_watched = |point: &Point| {
+            let mut carriers = point.carriers();
+            carriers.any(|(node, _)| watched.binary_search(&node).is_ok())
+        };
+        let lists = |has: &dyn Fn(&Point) -> bool| {
+            let points = system.contacts.iter().flat_map(|contact| &contact.points);
+            let points = (0..).zip(points).zip(&halo.homes.of_point);
+            let points = points.filter(|((_, point), home)| **home != 0 && has(point));
+            by_rank(points.map(|((number, _), home)| (number, *home)), rank)
+        };
+        SharedPoints {
+            all: lists(&|_| true),
+            watched: lists(&is_watched),
+            ..SharedPoints::default()
+        }
+    }
+
+    /// What a step sums over all ranks before [`SharedPoints::sum`]: whether any point of a contact was looked at, its least gap, and the largest
+    /// motion of its nodes.
+    pub(super) fn begin_sum(
+        &mut self,
+        contacts: &[OfContact],
+        (sums, largest): (&mut Vec<f64>, &mut Vec<f64>),
+    ) {
+        self.gaps.clear();
+        for of in contacts {
+            sums.push(f64::from(of.near));
+            largest.extend([-of.report.gap, of.motion]);
+            self.gaps.push(of.report.gap);
+        }
+    }
+
+    /// Takes what all ranks have given for it.
+    pub(super) fn take_begun(
+        contacts: &mut [OfContact],
+        (sums, largest): (&mut impl FnMut() -> f64, &mut impl FnMut() -> f64),
+    ) {
+        for of in contacts {
+            of.near = sums() > 0.0;
+            of.report.gap = -largest();
+            of.motion = largest();
+        }
+    }
+
+    /// Makes of what the points of this rank did what those of all ranks did, of the contacts of which any rank has looked at some.
+    pub(super) fn sum(&mut self, ranks: &Ranks, contacts: &mut [OfContact]) {
+        let SharedPoints {
+            gaps,
+            sums,
+            largest,
+            ..
+        } = self;
+        sums.clear();
+        largest.clear();
+        let near = || contacts.iter().zip(&*gaps).filter(|(of, _)| of.near);
+        for (of, gap) in near() {
+            numbers(&mut of.clone(), &mut |number| sums.push(*number));
+            let has_least = *gap == of.report.gap;
+            largest.push(if has_least {
+                of.report.rate
+            } else {
+                f64::NEG_INFINITY
+            });
+        }
+        if sums.is_empty() {
+            return;
+        }
+        ranks.reduce(sums, largest);
+        let (mut sums, mut largest) = (sums.iter(), largest.iter());
+        for of in contacts.iter_mut().filter(|of| of.near) {
+            numbers(of, &mut |number| {
+                *number = sums.next().copied().unwrap_or_default()
+            });
+            let report = &mut of.report;
+            let rate = largest.next().filter(|_| report.gap.is_finite());
+            report.rate = rate.copied().unwrap_or_default();
+            let friction = [0, 1, 2].map(|i| (report.resultant[i] - report.normal[i]).powi(2));
+            report.friction = friction.iter().sum::<f64>().sqrt();
+        }
+    }
+
+    /// Brings forces, gaps and statuses of the points at watched nodes to the first rank, of all points with `seen`, and all that a state has of
+    /// them with `whole`.
+    pub(super) fn gather(&mut self, ranks: &Ranks, scope: Scope, state: &mut State) {
+        let SharedPoints {
+            all, watched, room, ..
+        } = self;
+        let lists = if scope == Scope::Watched {
+            &*watched
+        } else {
+            &*all
+        };
+        let (whole, is_first) = (scope == Scope::All, ranks.is_first());
+        let each = if whole { WHOLE } else { SEEN };
+        room.resize_with(lists.len(), Message::default);
+        for (message, list) in room.iter_mut().zip(lists) {
+            message.with = list.rank;
+            message.values.resize(each * list.nodes.len(), 0.0);
+        }
+        if is_first {
+            ranks.exchange(&[], room, || ());
+        }
+        for (message, list) in room.iter_mut().zip(lists) {
+            let mut values = message.values.iter_mut();
+            for &point in &list.nodes {
+                of_point(state, point as usize, whole, &mut |number| {
+                    if let Some(value) = values.next() {
+                        match is_first {
+                            true => *number = *value,
+                            false => *value = *number,
+                        }
+                    }
+                });
+            }
+        }
+        if !is_first {
+            ranks.exchange(room, &mut [], || ());
+        }
+        if whole {
+            sum_closings(ranks, &mut state.records);
+        }
+    }
+}
+
+/// Makes the closings that each rank has counted those of the first, which has all of them then.
+fn sum_closings(ranks: &Ranks, records: &mut Records) {
+    let mut counts = Vec::with_capacity(3 * records.contacts.len());
+    for record in &mut records.contacts {
+        counts.extend(record.closings_mut().map(|count| *count as f64));
+    }
+    ranks.reduce(&mut counts, &mut []);
+    let mut counts = counts.iter();
+    for record in &mut records.contacts {
+        for count in record.closings_mut() {
+            let sum = counts.next().filter(|_| ranks.is_first());
+            *count = sum.map_or(0, |sum| *sum as u64);
+        }
+    }
+}
+
+/// Visits what of a contact is a sum over its points, or of one rank alone.
+fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
+    let OfContact {
+        near: _,
+        motion: _,
+        report,
+        work,
+        crushed,
+        pushed,
+        passing,
+        jump: _,
+    } = of;
+    let vectors = [
+        &mut report.resultant,
+        &mut report.normal,
+        &mut report.moment,
+        &mut pushed.force,
+    ];
+    vectors.into_iter().flatten().for_each(&mut *visit);
+    let counts = [
+        &mut report.slipping,
+        &mut report.closed,
+        &mut report.status_changes,
+    ];
+    for count in counts {
+        let mut number = *count as f64;
+        visit(&mut number);
+        *count = number as usize;
+    }
+    let mut place = f64::from(passing.place);
+    let sums = [
+        &mut report.force,
+        &mut report.friction_loss,
+        &mut report.persistency_defect,
+        work,
+        crushed,
+        &mut pushed.turn,
+        &mut passing.value,
+        &mut passing.time,
+        &mut place,
+    ];
+    sums.into_iter().for_each(visit);
+    passing.place = place as u32;
+}
+
+/// Visits what a state has of a point: what is seen of it, or the `whole`.
+fn of_point(state: &mut State, point: usize, whole: bool, visit: &mut impl FnMut(&mut f64)) {
+    let InterfaceState {
+        force,
+        friction,
+        carried,
+        gap,
+        rate,
+        opening,
+        status,
+        watched,
+        flight,
+        crush,
+    } = &mut state.interface;
+    let mut slid = friction.get(point).copied().unwrap_or_default();
+    let mut number = number_of(status[point]);
+    let seen = [&mut force[point], &mut gap[point], &mut number];
+    seen.into_iter().chain(&mut slid).for_each(&mut *visit);
+    status[point] = status_of(number);
+    if friction.is_empty() && slid != [0.0; 2] {
+        friction.resize(force.len(), [0.0; 2]);
+    }
+    if let Some(friction) = friction.get_mut(point) {
+        *friction = slid;
+    }
+    if !whole {
+        return;
+    }
+    let mut is_watched = f64::from(watched[point]);
+    let rest = [
+        &mut carried[point],
+        &mut rate[point],
+        &mut opening[point],
+        &mut flight[point],
+        &mut crush[point],
+        &mut state.records.opened[point],
+        &mut is_watched,
+    ];
+    rest.into_iter().for_each(visit);
+    watched[point] = is_watched != 0.0;
+}
+
+/// A status as a number: pieces from 3 on.
+fn number_of(status: Status) -> f64 {
+    match status {
+        Status::Open => 0.0,
+        Status::Closed => 1.0,
+        Status::Corner => 2.0,
+        Status::Piece(piece) => 3.0 + f64::from(piece),
+    }
+}
+
+/// The reverse.
+fn status_of(number: f64) -> Status {
+    match number as u32 {
+        0 => Status::Open,
+        1 => Status::Closed,
+        2 => Status::Corner,
+        piece => Status::Piece((piece - 3) as u16),
+    }
+}

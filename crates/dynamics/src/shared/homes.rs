@@ -1,0 +1,154 @@
+//! Which rank has each contact point.
+//!
+//! Forces of contact points whose rows share a node depend on each other, and so do points that look for the same faces. Points and nodes
+//! that such rows may connect are a *family*: each node with its points under an obstacle alone is one, all points and
+//! nodes of a contact of two surfaces are one, with those of other contacts that have some of its nodes. A family is solved by one
+//! rank, its *home*: of those that own its nodes the one that owns most of them. So points on obstacles stay where their nodes are, and contacts are shared out by their places.
+
+use std::ops::Range;
+
+use carom_contact::{Contact, Target};
+
+use crate::system::System;
+
+/// Home of a node without contacts.
+const NONE: u32 = u32::MAX;
+
+/// The homes of all contact points.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Homes {
+    /// Of each point.
+    pub(crate) of_point: Vec<u32>,
+    /// Of each node of the system, or [`NONE`].
+    of_node: Vec<u32>,
+}
+
+/// Which of a contact's points a rank has.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Own {
+    All,
+    /// These, by their numbers in the contact, ascending; others have the rest. None of them perhaps.
+    Some(Vec<u32>),
+}
+
+impl Homes {
+    /// `owner`: rank that owns each node of the system.
+    pub(crate) fn new(system: &System, owner: &[u32]) -> Homes {
+        let mut families = Families::new(owner.len());
+        for contact in &system.contacts {
+            if is_split(contact) {
+                for point in &contact.points {
+                    families.join(point.carriers().map(|(node, _)| node));
+                }
+            } else {
+                families.join(contact.nodes().0.into_iter());
+            }
+        }
+        let of_node = families.homes(owner);
+        let points = system.contacts.iter().flat_map(|contact| &contact.points);
+        Homes {
+            of_point: points.map(|point| of_node[point.node() as usize]).collect(),
+            of_node,
+        }
+    }
+
+    /// The home of a node's contacts; none if it has none.
+    pub(crate) fn of_node(&self, node: usize) -> Option<u32> {
+        Some(self.of_node[node]).filter(|home| *home != NONE)
+    }
+
+    /// Of each contact the points of a rank.
+    pub(crate) fn own(&self, system: &System, rank: usize) -> Vec<Own> {
+        let own = |range: Range<usize>| {
+            let homes = self.of_point[range].iter().zip(0..);
+            let own = homes.filter(|(home, _)| **home as usize == rank);
+            own.map(|(_, point)| point).collect::<Vec<u32>>()
+        };
+        let of_contact = |contact: usize| {
+            let points = system.points_of(contact);
+            match own(points.clone()) {
+                all if all.len() == points.len() => Own::All,
+                some => Own::Some(some),
+            }
+        };
+        (0..system.contacts.len()).map(of_contact).collect()
+    }
+}
+
+/// Whether the rows of each point are those of its own nodes, whatever the others do.
+fn is_split(contact: &Contact) -> bool {
+    matches!(contact.target, Target::Rigid(_)) && contact.mortar.is_none()
+}
+
+/// Nodes that contacts connect, as trees: each node's parent, itself where it is the root, and [`NONE`] without contacts.
+struct Families {
+    parents: Vec<u32>,
+}
+
+impl Families {
+    fn new(nodes: usize) -> Families {
+        Families {
+            parents: vec![NONE; nodes],
+        }
+    }
+
+    fn root(&mut self, node: u32) -> u32 {
+        let mut at = node;
+        while self.parents[at as usize] != at {
+            let parent = self.parents[at as usize];
+            let above = self.parents[parent as usize];
+            self.parents[at as usize] = above;
+            at = above;
+        }
+        at
+    }
+
+    /// Makes some nodes of one family.
+    fn join(&mut self, nodes: impl Iterator<Item = u32>) {
+        let mut first = NONE;
+        for node in nodes {
+            if self.parents[node as usize] == NONE {
+                self.parents[node as usize] = node;
+            }
+            let root = self.root(node);
+            if first == NONE {
+                first = root;
+            }
+            self.parents[root as usize] = first;
+        }
+    }
+
+    /// The home of each node: the owner of most nodes of its family, the first of equals.
+    fn homes(mut self, owner: &[u32]) -> Vec<u32> {
+        let nodes = 0..self.parents.len() as u32;
+        let with: Vec<u32> = nodes
+            .filter(|&node| self.parents[node as usize] != NONE)
+            .collect();
+        let mut members: Vec<[u32; 2]> = Vec::with_capacity(with.len());
+        for &node in &with {
+            members.push([self.root(node), owner[node as usize]]);
+        }
+        members.sort_unstable();
+        let mut of_root: Vec<(u32, usize, u32)> = Vec::new();
+        for owned in members.chunk_by(|a, b| a == b) {
+            let [root, owner] = owned[0];
+            match of_root.last_mut() {
+                Some(last) if last.0 == root => {
+                    if owned.len() > last.1 {
+                        (last.1, last.2) = (owned.len(), owner);
+                    }
+                }
+                _ => of_root.push((root, owned.len(), owner)),
+            }
+        }
+        let mut homes = vec![NONE; self.parents.len()];
+        for node in with {
+            let root = self.root(node);
+            let found = of_root.binary_search_by_key(&root, |of| of.0);
+            if let Ok(found) = found {
+                homes[node as usize] = of_root[found].2;
+            }
+        }
+        homes
+    }
+}
