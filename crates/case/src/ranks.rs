@@ -44,12 +44,12 @@ pub(crate) fn shared(
 ) -> Result<Stepping, Failed> {
     let begun = Stepping::new(built, saved).and_then(|mut run| {
         run.add_earlier(costs);
-        let nodes = watched(settings, &built.system);
-        let nodes = nodes.map_err(|error| Error::Observer(Box::new(error)))?;
-        Ok((run, nodes))
+        let watched = watched(settings, &built.system);
+        let watched = watched.map_err(|error| Error::Observer(Box::new(error)))?;
+        Ok((run, watched))
     });
-    let (mut run, nodes) = together(ranks, begun, Failed::Start)?;
-    together(ranks, run.share(ranks, &nodes), Failed::Start)?;
+    let (mut run, watched) = together(ranks, begun, Failed::Start)?;
+    together(ranks, run.share(ranks, &watched), Failed::Start)?;
     settings.piece = run.piece(ranks);
     Ok(run)
 }

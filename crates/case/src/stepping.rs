@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_dynamics::{Costs, Driver, Error, RankShare, State, Stepper};
+use carom_dynamics::{Costs, Driver, Error, RankShare, State, Stepper, Watched};
 use carom_output::Piece;
 use carom_output::summary::Zones;
 use carom_ranks::Ranks;
@@ -40,11 +40,11 @@ impl Stepping {
         Ok(Stepping::One(Box::new(driver?)))
     }
 
-    /// Shares the run with other ranks; `watched`: nodes whose motion the first rank follows.
+    /// Shares the run with other ranks; `watched`: what the first rank follows.
     ///
     /// # Errors
     /// As [`Driver::share`].
-    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
+    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &Watched) -> Result<(), Error> {
         match self {
             Stepping::One(driver) => driver.share(ranks, watched),
             // zones that step apart have factors, which ranks do not share

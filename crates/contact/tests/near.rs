@@ -103,6 +103,8 @@ struct Way {
     forgets: bool,
     /// Steps are a quarter as long, and no gap counts that cannot close.
     short: bool,
+    /// Every third point is looked at alone.
+    some: bool,
 }
 
 struct Seen {
@@ -128,6 +130,7 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
         far: 0,
         projections: [0; 2],
     };
+    let own: Vec<u32> = (0..contact.points.len() as u32).step_by(3).collect();
     let parts = if way.short { 4 } else { 1 };
     for step in 0..parts * STEPS {
         let before = u.clone();
@@ -152,7 +155,7 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
         let motions = u.chunks(3).zip(before.chunks(3));
         let motions = motions.map(|(u, v)| u.iter().zip(v).map(|(u, v)| (u - v).powi(2)).sum());
         let largest = motions.fold(0.0, |most: f64, square: f64| most.max(square));
-        let reach = match way.short && !contact.moves() {
+        let reach = match way.short && !contact.moves() && !way.some {
             true => (8.0 * largest.sqrt()).clamp(REACH / 64.0, REACH),
             false => REACH,
         };
@@ -180,7 +183,7 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
             }),
             inside: &|point| gaps[point] < 0.0,
             initial: &initial,
-            own: None,
+            own: way.some.then_some(&own[..]),
         };
         contact.pair_near(&places, &mut search, &given, &mut near);
         seen.projections[0] += search.projections();
@@ -195,6 +198,11 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
                 "{at}"
             );
             gaps[point] = found;
+            if way.some && point % 3 != 0 {
+                assert_eq!(found, f64::INFINITY, "{at}");
+                assert_eq!(near.rows.row(point), (&[][..], &[][..]), "{at}");
+                continue;
+            }
             if wanted > reach + SAME {
                 seen.far += 1;
                 assert_eq!(found, f64::INFINITY, "{at}");
@@ -233,10 +241,16 @@ fn check(scene: &Scene, contact: &Contact, first: usize) -> Seen {
         seen.near,
         seen.far
     );
-    let (forgets, short) = (true, false);
-    compare(scene, contact, first, Way { forgets, short });
-    let short = true;
-    let seen = compare(scene, contact, first, Way { forgets, short });
+    let forgets = Way {
+        forgets: true,
+        ..Way::default()
+    };
+    compare(scene, contact, first, forgets);
+    let short = Way {
+        short: true,
+        ..forgets
+    };
+    let seen = compare(scene, contact, first, short);
     assert!(seen.near > 300, "{}", seen.near);
     seen
 }
@@ -311,6 +325,33 @@ fn nodes_on_a_sphere() {
     assert!(matches!(target.shape, Shape::Sphere(_)));
     let contact = contact(Target::Rigid(target), nodes_of(&scene, 1));
     check(&scene, &contact, scene.sheets[1]);
+}
+
+#[test]
+fn some_nodes_on_a_sphere() {
+    let scene = two_sheets();
+    let sphere = Sphere {
+        centre: [2.5, 2.5, -0.2],
+        radius: 3.0,
+        side: carom_contact::Side::Outside,
+    };
+    let target = carom_contact::Obstacle::from(sphere);
+    let contact = contact(Target::Rigid(target), nodes_of(&scene, 1));
+    for (forgets, short) in [(false, false), (true, true)] {
+        let some = true;
+        let way = Way {
+            forgets,
+            short,
+            some,
+        };
+        let seen = compare(&scene, &contact, scene.sheets[1], way);
+        assert!(
+            seen.near > 50 && seen.far > 50,
+            "{} {}",
+            seen.near,
+            seen.far
+        );
+    }
 }
 
 /// Two plates whose thickness is less than the reach, each with both its sides.

@@ -67,7 +67,7 @@ pub use records::{ContactRecord, Records};
 pub use report::{ContactReport, ContactSample, StepReport};
 pub use resultant::Resultant;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
-pub use shared::SharedNodes;
+pub use shared::{SharedNodes, Watched};
 pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};

@@ -45,9 +45,9 @@ pub trait Stepper {
 /// What somebody looks at of a state; each is in those after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scope {
-    /// The motion of watched nodes, forces, gaps and statuses of contact points there.
+    /// The motion of the [watched](crate::Watched) nodes; forces, gaps and statuses of contact points there.
     Watched,
-    /// Forces, gaps and statuses of all contact points.
+    /// Those of the watched points too.
     Points,
     /// All of it.
     All,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use carom_case::{
     Built, Failed, Finished, Input, Resume, build, parse, run, run_on_ranks, whole_on_ranks,
 };
-use carom_dynamics::{Driver, State};
+use carom_dynamics::{ContactRecord, Driver, State, Watched};
 use carom_output::checkpoint;
 use carom_ranks::{Ranks, threads};
 
@@ -104,6 +104,55 @@ sliding = "finite"
 end = "1.2 ms"
 step = { critical = 0.5 }
 scheme.central-difference = {}
+"#;
+
+/// A block between a floor that slides, with friction, a ball, and a wall that crushes; another block that strikes its corner; and a
+/// probe of the pressure on the floor.
+const CORNER: &str = r#"
+carom = 1
+[mesh]
+generate.block.box = { origin = [0.0, 0.0, 0.0005], size = [0.1, 0.08, 0.12], elements = [6, 5, 7] }
+generate.head.box = { origin = [0.03, 0.03, 0.121], size = [0.1, 0.06, 0.06], elements = [6, 4, 3] }
+[material.soft]
+density = 1000.0
+neo-hooke = { young = "5 MPa", poisson = 0.3 }
+[body.block]
+region = "block"
+material = "soft"
+initial = { velocity = [2.0, 0.5, -3.0] }
+[body.head]
+region = "head"
+material = "soft"
+initial = { velocity = [0.0, 0.0, -6.0] }
+[contact.floor]
+secondary = "block.bottom"
+obstacle.plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0], motion.velocity = [0.0, -1.0, 0.2] }
+law.velocity = {}
+friction.coulomb = 0.3
+[contact.wall]
+secondary = "block.right"
+obstacle.plane = { point = [0.1008, 0.0, 0.0], normal = [-1.0, 0.0, 0.05] }
+law.stop = { curve = [{ penetration = "1 mm", force = "400 N" }, { penetration = "3 mm", force = "600 N" }], crush = "permanent" }
+moment-about = [0.1, 0.0, 0.0]
+[contact.ball]
+secondary = "block.back"
+obstacle.sphere = { centre = [0.02, 0.13, 0.09], radius = 0.0495 }
+law.velocity = {}
+[contact.strike]
+secondary = "head.bottom"
+primary = "block.top"
+law.velocity = {}
+sliding = "finite"
+[time]
+end = "2.5 ms"
+step = { critical = 0.1 }
+scheme.central-difference = {}
+[probe.foot]
+on = "block.bottom"
+record = ["displacement", "contact"]
+[probe.side]
+on = "block.right"
+record = ["contact"]
 "#;
 
 const SMALL: &str = r#"elastic = { young = "5 MPa", poisson = 0.3 }"#;
@@ -211,8 +260,67 @@ fn assert_same(name: &str, one: &State, other: &State) {
         let apart = apart(a, b);
         assert!(apart < TOLERANCE, "{name}: {of} differs by {apart:e}");
     }
-    let (a, b) = (&one.ledger.balance, &other.ledger.balance);
+    let (a, b) = (&one.interface, &other.interface);
+    assert_eq!(a.status, b.status, "{name}");
+    assert_eq!(a.watched, b.watched, "{name}");
+    let finite = |values: &[f64]| -> Vec<f64> {
+        let finite = |x: &f64| if x.is_finite() { *x } else { -1.0 };
+        values.iter().map(finite).collect()
+    };
+    let points = [
+        ("gap", &a.gap, &b.gap),
+        ("flight", &a.flight, &b.flight),
+        ("crush", &a.crush, &b.crush),
+        ("carried force", &a.carried, &b.carried),
+    ];
+    for (of, a, b) in points {
+        let apart = apart(&finite(a), &finite(b));
+        assert!(apart < TOLERANCE, "{name}: {of} differs by {apart:e}");
+    }
+    // rates of closed points are rounding
+    let speed = one
+        .motion
+        .v
+        .iter()
+        .fold(0.0f64, |most, v| most.max(v.abs()));
+    for (a, b) in a.rate.iter().zip(&b.rate) {
+        assert!((a - b).abs() < TOLERANCE * speed, "{name}: rate");
+    }
+    let slid = a.friction.as_flattened();
+    assert!(
+        apart(slid, b.friction.as_flattened()) < TOLERANCE,
+        "{name}: friction"
+    );
+    for (a, b) in one.records.contacts.iter().zip(&other.records.contacts) {
+        let counts = |record: &ContactRecord| {
+            let ContactRecord {
+                status_changes,
+                hasty_closings,
+                closings,
+                ..
+            } = record;
+            [*status_changes, *hasty_closings, *closings]
+        };
+        assert_eq!(counts(a), counts(b), "{name}");
+        let numbers = |record: &ContactRecord| {
+            [
+                record.peak_force,
+                record.penetration,
+                record.energy_crushed,
+                record.friction_loss(),
+                record.impulse(),
+            ]
+        };
+        for (k, (a, b)) in numbers(a).into_iter().zip(numbers(b)).enumerate() {
+            assert!((a - b).abs() <= 1e-8 * a.abs(), "{name}: {k}: {a:e} {b:e}");
+        }
+    }
     let most = one.ledger.largest_energy;
+    for (a, b) in one.records.contacts.iter().zip(&other.records.contacts) {
+        let defects = [a, b].map(ContactRecord::persistency_defect);
+        assert!((defects[0] - defects[1]).abs() < TOLERANCE * most, "{name}");
+    }
+    let (a, b) = (&one.ledger.balance, &other.ledger.balance);
     for (of, a, b) in [
         ("kinetic energy", a.kinetic, b.kinetic),
         ("strain energy", a.strain, b.strain),
@@ -326,6 +434,29 @@ fn two_bodies_with_friction_and_a_support_are_those_of_one_process_on_several_ra
     compare_on_ranks("pair", PAIR, &[2, 4]);
 }
 
+/// Points of a block on several ranks, each of which has some of every contact with an obstacle.
+#[test]
+fn contacts_of_several_kinds_are_those_of_one_process_on_several_ranks() {
+    let shares = on_all(4, |ranks| {
+        let (_, _, built) = built(CORNER);
+        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
+        driver.share(ranks, &Watched::default()).unwrap();
+        driver.rank_share().unwrap().points
+    });
+    let (_, _, built) = built(CORNER);
+    assert_eq!(shares.iter().sum::<usize>(), built.system.points());
+    assert!(shares.iter().all(|own| *own > 0), "{shares:?}");
+    compare_on_ranks("corner", CORNER, &[2, 3, 4]);
+    let folder = tempfile::tempdir().unwrap();
+    run_alone(CORNER, folder.path());
+    let state = last(CORNER, folder.path());
+    let records = &state.records.contacts;
+    // all of them touch, and the wall is crushed: the comparison is of something
+    assert!(records.iter().all(|record| record.closings > 0));
+    assert!(records.iter().any(|record| record.energy_crushed > 0.0));
+    assert!(records.iter().any(|record| record.friction_loss() > 0.0));
+}
+
 #[test]
 fn three_ranks_and_one_go_on_from_the_checkpoint_of_four() {
     let text = block(METAL);
@@ -396,7 +527,7 @@ fn sent(height: &str, steps: u64) -> Vec<[f64; 2]> {
     on_all(4, |ranks| {
         let (_, _, built) = built(&text);
         let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
-        driver.share(ranks, &[]).unwrap();
+        driver.share(ranks, &Watched::default()).unwrap();
         let before = driver.rank_share().unwrap();
         (0..steps).for_each(|_| driver.step().unwrap());
         let sent = driver.rank_share().unwrap().sent_bytes - before.sent_bytes;

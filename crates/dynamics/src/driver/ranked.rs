@@ -17,7 +17,7 @@ use super::record::OfContact;
 use crate::error::Error;
 use crate::march::{Going, Scope};
 use crate::records::ContactRecord;
-use crate::shared::{Own, Shared, SharedNodes, Told, partition_of};
+use crate::shared::{Own, Shared, SharedNodes, Told, Watched, partition_of};
 use crate::small::Largest;
 use crate::update::Sums;
 
@@ -41,12 +41,11 @@ pub struct RankShare {
 impl Driver {
     /// Shares the run, whose state all ranks have, with others: the elements of explicit steps that can be shared
     /// ([`why_not_on_ranks`](crate::why_not_on_ranks)); of others the products of iterations, while each rank takes all of the step
-    /// ([`Alike`](crate::Alike)). `watched`: nodes (system numbers) whose motion the first rank is to have after each step; all ranks ask
-    /// together.
+    /// ([`Alike`](crate::Alike)). All ranks ask together.
     ///
     /// # Errors
     /// [`Error::Partition`].
-    pub fn share(&mut self, ranks: &Ranks, watched: &[u32]) -> Result<(), Error> {
+    pub fn share(&mut self, ranks: &Ranks, watched: &Watched) -> Result<(), Error> {
         if ranks.count() == 1 {
             return Ok(());
         }
@@ -184,12 +183,19 @@ impl Driver {
         }
     }
 
-    /// Leaves out gaps beyond what all nodes together look at, and tells what is recorded of contacts of which no point was looked at.
-    fn know_gaps(&self, contacts: &mut [OfContact]) {
+    /// Leaves out gaps beyond what counts in a step with the motion of all nodes, and tells what is recorded of contacts of which no point was
+    /// looked at.
+    fn know_gaps(&mut self, contacts: &mut [OfContact]) {
+        let interface = &mut self.next.interface;
         for (k, of) in contacts.iter_mut().enumerate() {
             let reach = self.system.contacts[k].reach(of.motion, self.active.reaches[k]);
             if of.report.gap > reach {
                 of.report.gap = f64::INFINITY;
+            }
+            for point in self.active.within(self.system.points_of(k)) {
+                if interface.gap[point] > reach {
+                    (interface.gap[point], interface.rate[point]) = (f64::INFINITY, 0.0);
+                }
             }
             if !of.near {
                 of.passing = self.state.records.contacts[k].passing;

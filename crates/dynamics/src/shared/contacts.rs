@@ -4,6 +4,7 @@ use carom_contact::Point;
 use carom_contact::law::Status;
 use carom_ranks::{Message, Ranks};
 
+use super::Watched;
 use super::halo::{Halo, With, by_rank};
 use crate::driver::OfContact;
 use crate::march::Scope;
@@ -21,6 +22,8 @@ pub(super) struct SharedPoints {
     all: Vec<With>,
     /// Those at watched nodes.
     watched: Vec<With>,
+    /// Those that are looked at with [`Scope::Points`], and at watched nodes.
+    seen: Vec<With>,
     room: Vec<Message>,
     /// Least gaps of the contacts on this rank, m.
     gaps: Vec<f64>,
@@ -29,27 +32,34 @@ pub(super) struct SharedPoints {
 }
 
 impl SharedPoints {
-    /// `watched`: nodes.
     pub(super) fn new(
         system: &System,
         (halo, rank): (&Halo, usize),
-        watched: &[u32],
+        watched: &Watched,
     ) -> SharedPoints {
-        let mut watched = watched.to_vec();
-        watched.sort_unstable();
-        let is_watched = |point: &Point| {
+        let [nodes, seen] = [&watched.nodes, &watched.points].map(|numbers| {
+            let mut numbers = numbers.clone();
+            numbers.sort_unstable();
+            numbers
+        });
+        let is_watched = |_, point: &Point| {
             let mut carriers = point.carriers();
-            carriers.any(|(node, _)| watched.binary_search(&node).is_ok())
+            carriers.any(|(node, _)| nodes.binary_search(&node).is_ok())
         };
-        let lists = |has: &dyn Fn(&Point) -> bool| {
+        let is_seen = |number: u32, point: &Point| {
+            seen.binary_search(&number).is_ok() || is_watched(number, point)
+        };
+        let lists = |has: &dyn Fn(u32, &Point) -> bool| {
             let points = system.contacts.iter().flat_map(|contact| &contact.points);
             let points = (0..).zip(points).zip(&halo.homes.of_point);
-            let points = points.filter(|((_, point), home)| **home != 0 && has(point));
+            let points =
+                points.filter(|((number, point), home)| **home != 0 && has(*number, point));
             by_rank(points.map(|((number, _), home)| (number, *home)), rank)
         };
         SharedPoints {
-            all: lists(&|_| true),
+            all: lists(&|_, _| true),
             watched: lists(&is_watched),
+            seen: lists(&is_seen),
             ..SharedPoints::default()
         }
     }
@@ -118,46 +128,57 @@ impl SharedPoints {
         }
     }
 
-    /// Brings forces, gaps and statuses of the points at watched nodes to the first rank, of all points with `seen`, and all that a state has of
-    /// them with `whole`.
+    /// Brings forces, gaps and statuses of the points of a scope to the first rank; with all of them all that a state has of them.
     pub(super) fn gather(&mut self, ranks: &Ranks, scope: Scope, state: &mut State) {
-        let SharedPoints {
-            all, watched, room, ..
-        } = self;
-        let lists = if scope == Scope::Watched {
-            &*watched
-        } else {
-            &*all
+        let lists = match scope {
+            Scope::Watched => &self.watched,
+            Scope::Points => &self.seen,
+            Scope::All => &self.all,
         };
-        let (whole, is_first) = (scope == Scope::All, ranks.is_first());
-        let each = if whole { WHOLE } else { SEEN };
-        room.resize_with(lists.len(), Message::default);
-        for (message, list) in room.iter_mut().zip(lists) {
-            message.with = list.rank;
-            message.values.resize(each * list.nodes.len(), 0.0);
-        }
-        if is_first {
-            ranks.exchange(&[], room, || ());
-        }
-        for (message, list) in room.iter_mut().zip(lists) {
-            let mut values = message.values.iter_mut();
-            for &point in &list.nodes {
-                of_point(state, point as usize, whole, &mut |number| {
-                    if let Some(value) = values.next() {
-                        match is_first {
-                            true => *number = *value,
-                            false => *value = *number,
-                        }
-                    }
-                });
-            }
-        }
-        if !is_first {
-            ranks.exchange(room, &mut [], || ());
-        }
+        let whole = scope == Scope::All;
+        collect((ranks, whole), (lists, &mut self.room), state);
         if whole {
             sum_closings(ranks, &mut state.records);
         }
+    }
+
+    /// Brings forces, gaps and statuses of all points to the first rank.
+    pub(super) fn gather_seen(&mut self, ranks: &Ranks, state: &mut State) {
+        collect((ranks, false), (&self.all, &mut self.room), state);
+    }
+}
+
+/// Brings what is seen of points, or the `whole`, to the first rank.
+fn collect(
+    (ranks, whole): (&Ranks, bool),
+    (lists, room): (&[With], &mut Vec<Message>),
+    state: &mut State,
+) {
+    let is_first = ranks.is_first();
+    let each = if whole { WHOLE } else { SEEN };
+    room.resize_with(lists.len(), Message::default);
+    for (message, list) in room.iter_mut().zip(lists) {
+        message.with = list.rank;
+        message.values.resize(each * list.nodes.len(), 0.0);
+    }
+    if is_first {
+        ranks.exchange(&[], room, || ());
+    }
+    for (message, list) in room.iter_mut().zip(lists) {
+        let mut values = message.values.iter_mut();
+        for &point in &list.nodes {
+            of_point(state, point as usize, whole, &mut |number| {
+                if let Some(value) = values.next() {
+                    match is_first {
+                        true => *number = *value,
+                        false => *value = *number,
+                    }
+                }
+            });
+        }
+    }
+    if !is_first {
+        ranks.exchange(room, &mut [], || ());
     }
 }
 

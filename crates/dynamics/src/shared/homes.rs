@@ -152,3 +152,20 @@ impl Families {
         homes
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_family_is_with_the_rank_that_owns_most_of_it() {
+        // nodes 0 to 2 and 4 are connected by three lists; 3 has no contact; 5 and 6 belong to one rank each
+        let mut families = Families::new(8);
+        for nodes in [&[0, 1][..], &[4, 2], &[2, 1], &[5], &[6, 7]] {
+            families.join(nodes.iter().copied());
+        }
+        let owner = [3, 1, 1, 0, 2, 4, 5, 2];
+        // of the two ranks that own one node of 6 and 7 each the first
+        assert_eq!(families.homes(&owner), [1, 1, 1, NONE, 1, 4, 2, 2]);
+    }
+}

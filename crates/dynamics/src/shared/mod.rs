@@ -29,6 +29,15 @@ use parts::Partition;
 pub use parts::SharedNodes;
 pub(crate) use parts::partition_of;
 
+/// What the first of several ranks is to have of a state that it does not compute itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Watched {
+    /// Nodes (system numbers) whose motion it has after each step, with the contact points there.
+    pub nodes: Vec<u32>,
+    /// Contact points that it has where somebody looks at points ([`Scope::Points`]).
+    pub points: Vec<u32>,
+}
+
 /// What a rank has of a run.
 pub(crate) struct Shared {
     pub(crate) ranks: Ranks,
@@ -60,11 +69,11 @@ pub(crate) struct Told {
 }
 
 impl Shared {
-    /// Of this rank. `watched`: nodes whose motion the first rank has after each step; `partition`: of the elements of each body, solids all of them.
+    /// Of this rank. `partition`: of the elements of each body, solids all of them.
     pub(crate) fn new(
         system: &System,
         ranks: &Ranks,
-        (watched, partition): (&[u32], Partition),
+        (watched, partition): (&Watched, Partition),
     ) -> Shared {
         let rank = ranks.rank();
         let elements = partition.of_bodies;
@@ -96,7 +105,7 @@ impl Shared {
             touched: messages(&halo.touched, dim),
             sums: Vec::new(),
             largest: Vec::new(),
-            whole: whole::Whole::new(system, (&halo, rank), watched, &elements),
+            whole: whole::Whole::new(system, (&halo, rank), &watched.nodes, &elements),
             looks: looks::SharedLooks::new(&elements, ranks.count()),
             points: contacts::SharedPoints::new(system, (&halo, rank), watched),
             halo,
@@ -241,7 +250,7 @@ impl Shared {
 
     /// Brings to it what is looked at of contacts: the displacements of their nodes, and their points.
     pub(crate) fn bring_contacts(&mut self, dim: usize, state: &mut State) {
-        self.points.gather(&self.ranks, Scope::Points, state);
+        self.points.gather_seen(&self.ranks, state);
         let motion = &mut state.motion;
         self.whole.gather_touched(&self.ranks, dim, motion);
     }

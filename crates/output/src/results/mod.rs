@@ -47,7 +47,7 @@ mod zoning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System};
+use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System, Watched};
 
 use crate::{Error, Folder, atomic, checkpoint};
 use discrete::DiscretePeaks;
@@ -304,11 +304,12 @@ impl Results {
     }
 }
 
-/// Nodes (system numbers) whose motion the results follow from step to step: those of probes and of the contact point that is drawn.
+/// What the results follow from step to step: the motion of the nodes of probes and of the contact point that is drawn, and the statuses of
+/// the points in the picture of statuses.
 ///
 /// # Errors
 /// A probe without a node of a body.
-pub fn watched(settings: &Settings, system: &System) -> Result<Vec<u32>, Error> {
+pub fn watched(settings: &Settings, system: &System) -> Result<Watched, Error> {
     let point = sensor::contact_point(system, settings.reference.as_ref(), None);
     let sides = point.iter().flat_map(|point| &point.sides);
     let mut nodes: Vec<u32> = sides.flat_map(|(_, sensor)| sensor.nodes()).collect();
@@ -322,7 +323,12 @@ pub fn watched(settings: &Settings, system: &System) -> Result<Vec<u32>, Error> 
     nodes.retain(|node| *node != u32::MAX);
     nodes.sort_unstable();
     nodes.dedup();
-    Ok(nodes)
+    let contacts = 0..system.contacts.len();
+    let points = contacts.flat_map(|contact| page::raster::points(system, contact));
+    Ok(Watched {
+        nodes,
+        points: points.map(|(_, point)| point as u32).collect(),
+    })
 }
 
 impl Observer for Results {

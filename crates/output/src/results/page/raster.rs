@@ -110,10 +110,8 @@ impl RasterOf {
             }
             let from = self.last[contact].map_or(column, |last| (last + 1).min(column));
             self.last[contact] = Some(column);
-            let points = system.points_of(contact);
-            let count = points.len();
-            for k in (0..count).step_by(count.div_ceil(POINTS).max(1)) {
-                let point = points.start + k;
+            let count = system.points_of(contact).len();
+            for (k, point) in points(system, contact) {
                 let row = k * rows / count;
                 let bit = status(system, point, state);
                 // a step may be longer than a column
@@ -123,6 +121,14 @@ impl RasterOf {
             }
         }
     }
+}
+
+/// The points of a contact that are looked at, by their numbers in the contact and among all.
+pub(crate) fn points(system: &System, contact: usize) -> impl Iterator<Item = (usize, usize)> {
+    let points = system.points_of(contact);
+    let count = points.len();
+    let numbers = (0..count).step_by(count.div_ceil(POINTS).max(1));
+    numbers.map(move |k| (k, points.start + k))
 }
 
 /// The column of a time, s; that of a static stage before the dynamics is the first.
