@@ -90,7 +90,7 @@ fn main() {
         "boxes are not the parts"
     );
     println!(
-        "unknowns ranks elements neighbours bytes communication without_contacts with_contacts"
+        "unknowns ranks elements neighbours bytes communication without_contacts on_obstacle on_surface"
     );
     for (n, ranks) in [(149, 1024), (693, 1024), (693, 8192), (693, 131_072)] {
         let mut parts = Vec::new();
@@ -101,18 +101,28 @@ fn main() {
         let bytes = 24 * nodes;
         let halo = neighbours as f64 * LATENCY + bytes as f64 / BANDWIDTH;
         // sums to all and two words of the first rank, each up and down a tree
-        let sums = 5.0 * (ranks as f64).log2().ceil() * LATENCY;
+        let tree = (ranks as f64).log2().ceil() * LATENCY;
+        let sums = 5.0 * tree;
         let work = most as f64 * ELEMENT;
         let ideal = (n * n * n) as f64 * ELEMENT / ranks as f64;
-        // the side of the cube: nodes of the contact, which the first rank has
-        let contact = ((n + 1) * (n + 1)) as f64 * POINT;
-        let passed = 24.0 * ((n + 1) * (n + 1)) as f64 / BANDWIDTH;
+        // a side of the cube on an obstacle: each rank has the points of its nodes, and gives their forces to the neighbours that share them;
+        // what the contacts did is summed
+        let side = |part: &Part| (0..2).map(|i| part[i][1] - part[i][0] + 1).product::<u64>();
+        let points = parts.iter().filter(|part| part[2][0] == 0).map(side).max();
+        let points = points.unwrap_or(0) as f64;
+        let shared = 8.0 * LATENCY + 24.0 * 4.0 * points.sqrt() / BANDWIDTH;
+        let spread = points * POINT + shared + 2.0 * tree;
+        // a side against another surface: one rank has all points
+        let all = ((n + 1) * (n + 1)) as f64;
+        let gathered = all * (POINT + 24.0 / BANDWIDTH) + 2.0 * tree;
+        let efficiency = |contact: f64| ideal / (work + halo + sums + contact);
         println!(
-            "{:.2e} {ranks} {most} {neighbours} {bytes} {:.1e} {:.2} {:.3}",
+            "{:.2e} {ranks} {most} {neighbours} {bytes} {:.1e} {:.2} {:.2} {:.3}",
             3.0 * ((n + 1) as f64).powi(3),
             halo + sums,
-            ideal / (work + halo + sums),
-            ideal / (work + halo + sums + contact + passed),
+            efficiency(0.0),
+            efficiency(spread),
+            efficiency(gathered),
         );
     }
 }
