@@ -34,6 +34,13 @@ const COLUMN: f64 = 0.02;
 /// are smooth. Over 100 steps of a block that falls 0.84 were measured with 24³ elements, 0.80 with 32³.
 const SOLVES: f64 = 0.85;
 
+/// The same with friction, whose slip forces are found with them: 1.34 times as many products were measured with 16³, 20³ and 24³ elements.
+const SOLVES_WITH_FRICTION: f64 = 1.34 * SOLVES;
+
+/// Additions and multiplications of the dense problem of a step with friction beside a factor, over the cube of its rows: 1.1 were measured for a block
+/// of 24³ elements on its face, half of whose steps are in contact.
+const DENSE: f64 = 1.1;
+
 /// Bytes that the cache of a processor keeps from one iteration to the next, which come twice as fast as those of memory.
 const CACHE: f64 = 16e6;
 
@@ -147,11 +154,18 @@ fn pays(
     [entries, operations]: [f64; 2],
 ) -> bool {
     let uses = of.part.map_or(ITERATIONS, |_| STEPS);
-    let solves = SOLVES * uses;
-    let columns = of.part.map_or(0, |part| closing(system, part));
+    let rubs = system.tangents() > 0;
+    let solves = uses * if rubs { SOLVES_WITH_FRICTION } else { SOLVES };
+    let rows = ((1 + system.tangents()) * closing(system, of.part)) as f64;
+    let columns = if of.part.is_some() { rows } else { 0.0 };
     // each use of a factor reads it twice, whatever its contacts
-    let sweeps = 2.0 * (uses + COLUMN * columns as f64);
-    let direct = operations / OPERATIONS_PER_BYTE + sweeps * 8.0 * entries;
+    let sweeps = 2.0 * (uses + COLUMN * columns);
+    let dense = if rubs {
+        uses * DENSE * rows.powi(3)
+    } else {
+        0.0
+    };
+    let direct = (operations + dense) / OPERATIONS_PER_BYTE + sweeps * 8.0 * entries;
     let n = solver.unknowns();
     let bytes = solver.bytes() as f64;
     let iteration = bytes - 0.5 * bytes.min(CACHE);
@@ -167,9 +181,9 @@ fn pays(
     iterations.is_some()
 }
 
-/// Contact points on a part that close within the steps which its matrix is taken to serve, if all moves on as it does at first. A point that
-/// loads alone bring to its contact is not among them.
-fn closing(system: &System, part: &Range<usize>) -> usize {
+/// Contact points on a part, or on any, that close within the steps which a matrix is taken to serve, if all moves on as it does at first. A
+/// point that loads alone bring to its contact is not among them.
+fn closing(system: &System, part: Option<&Range<usize>>) -> usize {
     let (u, v) = (&system.initial_displacement, &system.initial_velocity);
     let places = system.places(0.0, u, &system.initial_frames);
     let mut pairing = Pairing::default();
@@ -184,9 +198,16 @@ fn closing(system: &System, part: &Range<usize>) -> usize {
     };
     let inside = |point: &usize| {
         let mut unknowns = rows.row(*point).0.iter();
-        unknowns.any(|unknown| part.contains(&(*unknown as usize)))
+        part.is_none_or(|part| unknowns.any(|unknown| part.contains(&(*unknown as usize))))
     };
     (0..rows.len()).filter(closes).filter(inside).count()
+}
+
+/// Whether a factor of a matrix fits in memory.
+pub(crate) fn fits(system: &System, matrix: &Csr, nodes: &[u32]) -> Result<bool, AlgebraError> {
+    let place = |unknown: usize| system.x[nodes[unknown] as usize];
+    let order = Ordering::new(matrix, &groups(nodes), Some(&place))?;
+    Ok(8.0 * order.work()[0] <= MOST_BYTES)
 }
 
 /// Iterations of a solve with some load up to a tolerance; none if they do not end or are more than `most`.

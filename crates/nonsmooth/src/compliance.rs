@@ -13,26 +13,9 @@ pub enum Compliance<'a> {
     Dense(&'a [f64]),
     /// `D = N M⁻¹ Nᵀ` with sparse N and diagonal M.
     Lumped(&'a Lumped),
-}
-
-/// D of a problem without friction, of which the entries need not be known.
-#[derive(Clone, Copy)]
-pub enum Condensed<'a> {
-    /// All entries, row-major.
-    Dense(&'a [f64]),
-    /// `D = N M⁻¹ Nᵀ` with sparse N and diagonal M.
-    Lumped(&'a Lumped),
-    /// `D = N A⁻¹ Nᵀ` with A whose columns nobody computes: forces and motion are found together, by iterations.
+    /// `D = N A⁻¹ Nᵀ` with A whose columns nobody computes: forces and motion are found together, by iterations. As its entries over the rows of a
+    /// point count those with the blocks of nodes of A in place of A, which measure what a force moves, but are no part of the equations.
     Iterated(&'a RefCell<Saddle>),
-}
-
-impl<'a> From<Compliance<'a>> for Condensed<'a> {
-    fn from(compliance: Compliance<'a>) -> Condensed<'a> {
-        match compliance {
-            Compliance::Dense(entries) => Condensed::Dense(entries),
-            Compliance::Lumped(rows) => Condensed::Lumped(rows),
-        }
-    }
 }
 
 impl Compliance<'_> {
@@ -45,6 +28,7 @@ impl Compliance<'_> {
                 rows.dense(&mut entries);
                 entries
             }),
+            Compliance::Iterated(_) => None,
         }
     }
 }

@@ -12,7 +12,7 @@
 use carom_algebra::dense::DenseCholesky;
 use carom_laws::{End, Relation, Status};
 
-use crate::{Compliance, Condensed};
+use crate::Compliance;
 use iterated::Iterated;
 use serde::{Deserialize, Serialize};
 use thiserror::Error as ThisError;
@@ -135,13 +135,13 @@ impl Interface {
     ///
     /// `compliance`: D over the candidates, and its version; `s`: [s_g, s_v], the factors of x in the gap and
     /// in the rate.
-    pub fn solve<'d>(
+    pub fn solve(
         &mut self,
         candidates: &[Candidate],
-        (d, version): (impl Into<Condensed<'d>>, u64),
+        (d, version): (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
-        let compliance = (d.into(), version);
+        let compliance = (d, version);
         let n = candidates.len();
         self.statuses.clear();
         // a corner is found anew in each step, from a closed point that opens
@@ -161,8 +161,8 @@ impl Interface {
         self.reversals.resize(n, 0);
         self.circled = None;
         self.rough = match compliance.0 {
-            Condensed::Iterated(_) => ROUGH,
-            Condensed::Dense(_) | Condensed::Lumped(_) => 0.0,
+            Compliance::Iterated(_) => ROUGH,
+            Compliance::Dense(_) | Compliance::Lumped(_) => 0.0,
         };
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         let limit = 50 + 10 * n;
@@ -222,7 +222,7 @@ impl Interface {
     fn equalities(
         &mut self,
         candidates: &[Candidate],
-        (d, version): (Condensed, u64),
+        (d, version): (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let n = candidates.len();
@@ -265,7 +265,7 @@ impl Interface {
         let own = |i: u32, status| {
             let relation = relation(i, status);
             let shift = match d {
-                Condensed::Iterated(saddle) if candidates[i as usize].faces_itself => {
+                Compliance::Iterated(saddle) if candidates[i as usize].faces_itself => {
                     SHIFT * saddle.borrow().diagonal(i as usize)
                 }
                 _ => 0.0,
@@ -277,7 +277,7 @@ impl Interface {
         at_hand.clear();
         at_hand.extend(self.coupled.iter().map(|&(i, status)| own(i, status)));
         let stands = self.factor_of.0 == version && self.factor_of.1 == self.coupled;
-        if let (Condensed::Dense(d), true) = (d, !stands || at_hand != of_factor) {
+        if let (Compliance::Dense(d), true) = (d, !stands || at_hand != of_factor) {
             of_factor.clone_from(at_hand);
             let shared = |i: u32| candidates[i as usize].faces_itself;
             self.factor_of.1.clear();
@@ -286,7 +286,7 @@ impl Interface {
             self.factor_of.0 = version;
             self.factor_of.1.clone_from(&self.coupled);
         }
-        if self.coupled.is_empty() && !matches!(d, Condensed::Iterated(_)) {
+        if self.coupled.is_empty() && !matches!(d, Compliance::Iterated(_)) {
             return Ok(());
         }
         self.rhs.clear();
@@ -295,7 +295,7 @@ impl Interface {
             -free(i, &relation) / scale(i, &relation) - self.product[i as usize]
         }));
         match (d, &self.factor) {
-            (Condensed::Lumped(d), _) => {
+            (Compliance::Lumped(d), _) => {
                 let own = &self.own[0];
                 self.iterated
                     .solve(d, (&self.coupled, own), &mut self.rhs)
@@ -304,7 +304,7 @@ impl Interface {
                         cause,
                     })?;
             }
-            (Condensed::Iterated(saddle), _) => {
+            (Compliance::Iterated(saddle), _) => {
                 self.numbers.clear();
                 self.numbers.extend(self.coupled.iter().map(|(i, _)| *i));
                 let (numbers, own) = (&self.numbers[..], &self.own[0][..]);
@@ -324,8 +324,8 @@ impl Interface {
                 }
                 return Ok(());
             }
-            (Condensed::Dense(_), Some(factor)) => factor.solve(&mut self.rhs),
-            (Condensed::Dense(_), None) => {}
+            (Compliance::Dense(_), Some(factor)) => factor.solve(&mut self.rhs),
+            (Compliance::Dense(_), None) => {}
         }
         for (&(i, _), &force) in self.coupled.iter().zip(&self.rhs) {
             self.forces[i as usize] = force;
@@ -334,10 +334,10 @@ impl Interface {
     }
 
     /// D P.
-    fn multiply(&mut self, d: Condensed) -> Result<(), Failure> {
+    fn multiply(&mut self, d: Compliance) -> Result<(), Failure> {
         let n = self.forces.len();
         match d {
-            Condensed::Dense(d) => {
+            Compliance::Dense(d) => {
                 for (i, product) in self.product.iter_mut().enumerate() {
                     *product = self
                         .closed
@@ -346,8 +346,8 @@ impl Interface {
                         .sum();
                 }
             }
-            Condensed::Lumped(d) => self.iterated.multiply(d, &self.forces, &mut self.product),
-            Condensed::Iterated(saddle) => {
+            Compliance::Lumped(d) => self.iterated.multiply(d, &self.forces, &mut self.product),
+            Compliance::Iterated(saddle) => {
                 let mut saddle = saddle.borrow_mut();
                 let refused = |cause| Failure::Singular { points: n, cause };
                 if saddle.give(&self.forces).map_err(refused)? {
@@ -361,7 +361,7 @@ impl Interface {
     }
 
     /// Candidates whose law asks for another status.
-    fn disagreements(&mut self, candidates: &[Candidate], d: Condensed, s: [f64; 2]) {
+    fn disagreements(&mut self, candidates: &[Candidate], d: Compliance, s: [f64; 2]) {
         self.changes.clear();
         for (i, candidate) in candidates.iter().enumerate() {
             if is_stuck(candidate, i, d, candidates.len()) {
@@ -385,7 +385,7 @@ impl Interface {
     fn clip(
         &mut self,
         candidates: &[Candidate],
-        compliance: (Condensed, u64),
+        compliance: (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let mut cut: Vec<(usize, Status)> = Vec::new();
@@ -467,7 +467,7 @@ fn factor(
 }
 
 /// Whether no force moves a point, all of its nodes being held, and its law does not say the force either: it carries none.
-fn is_stuck(candidate: &Candidate, i: usize, d: Condensed, n: usize) -> bool {
+fn is_stuck(candidate: &Candidate, i: usize, d: Compliance, n: usize) -> bool {
     let relation = candidate
         .law
         .get()
@@ -475,18 +475,18 @@ fn is_stuck(candidate: &Candidate, i: usize, d: Condensed, n: usize) -> bool {
     diagonal(d, i, n) == 0.0 && relation.compliance == 0.0
 }
 
-fn diagonal(d: Condensed, i: usize, n: usize) -> f64 {
+fn diagonal(d: Compliance, i: usize, n: usize) -> f64 {
     match d {
-        Condensed::Dense(d) => d[i * n + i],
-        Condensed::Lumped(d) => d.block(i, 0, 0),
-        Condensed::Iterated(saddle) => saddle.borrow().diagonal(i),
+        Compliance::Dense(d) => d[i * n + i],
+        Compliance::Lumped(d) => d.block(i, 0, 0),
+        Compliance::Iterated(saddle) => saddle.borrow().diagonal(i),
     }
 }
 
 fn end(
     candidate: &Candidate,
     i: usize,
-    d: Condensed,
+    d: Compliance,
     s: [f64; 2],
     forces: &[f64],
     product: &[f64],

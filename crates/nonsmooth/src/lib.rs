@@ -10,7 +10,7 @@ mod lumped;
 mod weak;
 mod work;
 
-pub use compliance::{Compliance, Condensed};
+pub use compliance::Compliance;
 pub use lumped::{Lumped, Unknown};
 pub use weak::Weak;
 pub use work::impulses_of_work;

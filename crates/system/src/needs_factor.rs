@@ -14,7 +14,6 @@ impl System {
         let law = |of: fn(&Law) -> bool| self.contacts.iter().any(|contact| of(&contact.law));
         let impulses = (0..self.contacts.len()).any(|contact| self.has_impulses(contact));
         let reasons = [
-            (self.tangents() > 0, "contacts with friction"),
             (!self.link_rows.is_empty(), "links, ties and constraints"),
             (!self.modal.is_empty(), "damping of modes"),
             (self.nonlinear.preload.is_some(), "a static stage"),

@@ -27,6 +27,8 @@ pub struct Saddle {
     lifted: Vec<SparseRow>,
     /// r, and its square in the norm of G⁻¹.
     load: Vec<f64>,
+    /// Forces of rows that are in it.
+    loaded: Vec<f64>,
     square: f64,
     /// Motion of forces that were given, and of those that were found, with that of the load.
     given: Vec<f64>,
@@ -42,6 +44,8 @@ pub struct Saddle {
     lambda: Vec<f64>,
     now: Option<f64>,
     residual: Vec<f64>,
+    /// Whether the residual is r - A x of the motion found, without forces of rows.
+    free: bool,
     preconditioned: [Vec<f64>; 2],
     direction: [Vec<f64>; 2],
     image: Vec<f64>,
@@ -89,14 +93,75 @@ impl Saddle {
         two.clear();
         self.multipliers.clear();
         self.multipliers.resize(self.rows.len(), 0.0);
-        (self.factor, self.now) = (None, None);
+        (self.factor, self.now, self.free) = (None, None, false);
         load(&mut self.load);
+        self.loaded.clear();
+        self.measure_load();
+    }
+
+    fn measure_load(&mut self) {
         for (first, operator) in &self.operators {
             let range = *first..*first + operator.unknowns();
             let z = &mut self.preconditioned[0][range.clone()];
             operator.precondition(&self.load[range], z);
         }
         self.square = dot(&self.load, &self.preconditioned[0]);
+    }
+
+    /// Adds forces of the first rows to the load of the begin, in place of others that were added before.
+    pub fn load_with(&mut self, forces: &[f64]) {
+        let zeros = |forces: &[f64]| forces.iter().all(|force| *force == 0.0);
+        if self.loaded == forces || self.loaded.is_empty() && zeros(forces) {
+            return;
+        }
+        let now = self.now.take();
+        self.loaded.resize(forces.len(), 0.0);
+        for (row, (force, before)) in self.rows.iter().zip(forces.iter().zip(&self.loaded)) {
+            if force != before {
+                add_row(row, force - before, &mut self.load);
+                add_row(row, force - before, &mut self.residual);
+            }
+        }
+        self.loaded.copy_from_slice(forces);
+        self.measure_load();
+        if now.is_some() {
+            self.now = Some(self.turn_anew());
+        }
+    }
+
+    /// Adds a row along a direction between two others; its number.
+    pub fn add_row_along(&mut self, rows: [u32; 2], direction: [f64; 2]) -> u32 {
+        let mut row = SparseRow::default();
+        for (&of, share) in rows.iter().zip(direction) {
+            let of = &self.rows[of as usize];
+            row.dofs.extend_from_slice(&of.dofs);
+            let own = of.coefficients.iter().map(|n| share * n);
+            row.coefficients.extend(own);
+        }
+        self.lifted.push(self.lift(&row));
+        self.rows.push(row);
+        self.multipliers.push(0.0);
+        self.rows.len() as u32 - 1
+    }
+
+    /// Forgets all rows but the first `count`.
+    pub fn keep_rows(&mut self, count: usize) {
+        if count < self.rows.len() {
+            self.release();
+            self.rows.truncate(count);
+            self.lifted.truncate(count);
+            self.multipliers.truncate(count);
+        }
+    }
+
+    /// Takes the forces of rows out of the residual, which then stands whatever rows are next.
+    fn release(&mut self) {
+        if self.now.take().is_some() {
+            for (&row, lambda) in self.of.0.iter().zip(&self.lambda) {
+                add_row(&self.rows[row as usize], *lambda, &mut self.residual);
+            }
+            self.free = true;
+        }
     }
 
     /// Gives the matrices back.
@@ -106,7 +171,12 @@ impl Saddle {
 
     /// N G⁻¹ Nᵀ of a row: zero where no force moves it.
     pub fn diagonal(&self, row: usize) -> f64 {
-        product(&self.rows[row], &self.lifted[row])
+        self.entry(row, row)
+    }
+
+    /// N G⁻¹ Nᵀ of two rows.
+    pub fn entry(&self, row: usize, other: usize) -> f64 {
+        product(&self.rows[row], &self.lifted[other])
     }
 
     /// N x of a row.
@@ -151,7 +221,7 @@ impl Saddle {
     fn rest(&mut self) {
         self.found.fill(0.0);
         self.multipliers.fill(0.0);
-        self.now = None;
+        (self.now, self.free) = (None, false);
     }
 
     /// b ← P of some rows, ascending, with `N x + K P = b`; the other rows have no force. `own`: K of these rows, not negative. Iterations begin with
@@ -192,13 +262,21 @@ impl Saddle {
 
     /// Begins iterations for some rows at the motion found last; the square of the residual.
     fn start(&mut self, (points, own): (&[u32], &[f64]), b: &[f64]) -> f64 {
+        self.release();
         self.of = (points.to_vec(), own.to_vec(), b.to_vec());
         let mut lambda = mem::take(&mut self.lambda);
         lambda.clear();
         lambda.extend(points.iter().map(|&k| self.multipliers[k as usize]));
         self.obey((points, own), b, &mut lambda);
         self.lambda = lambda;
-        self.precondition(points, None);
+        self.turn_anew()
+    }
+
+    /// Makes the direction that of the residual; the square of this.
+    fn turn_anew(&mut self) -> f64 {
+        let points = mem::take(&mut self.of.0);
+        self.precondition(&points, None);
+        self.of.0 = points;
         let [z, y] = &self.preconditioned;
         self.direction[0].clone_from(z);
         self.direction[1].clone_from(y);
@@ -276,18 +354,20 @@ impl Saddle {
 
     /// Moves an iterate to one that obeys N x - K λ = b, and finds its residual.
     fn obey(&mut self, (points, own): (&[u32], &[f64]), b: &[f64], lambda: &mut [f64]) {
-        let moves = self.found.iter().any(|x| *x != 0.0);
-        self.residual.copy_from_slice(&self.load);
-        let mut second = b.to_vec();
-        if moves {
-            self.direction[0].copy_from_slice(&self.found);
-            self.direction[1].clear();
-            self.direction[1].extend_from_slice(lambda);
-            self.apply(points, own);
-            add_scaled(-1.0, &self.image, &mut self.residual);
-            for (k, (left, &row)) in second.iter_mut().zip(points).enumerate() {
-                *left += own[k] * lambda[k] - sparse_dot(&self.rows[row as usize], &self.found);
+        if !mem::take(&mut self.free) {
+            self.residual.copy_from_slice(&self.load);
+            if self.found.iter().any(|x| *x != 0.0) {
+                self.direction[0].copy_from_slice(&self.found);
+                self.direction[1].clear();
+                self.apply(&[], &[]);
+                add_scaled(-1.0, &self.image, &mut self.residual);
             }
+        }
+        let mut second = b.to_vec();
+        for (k, (left, &row)) in second.iter_mut().zip(points).enumerate() {
+            let row = &self.rows[row as usize];
+            add_row(row, -lambda[k], &mut self.residual);
+            *left += own[k] * lambda[k] - sparse_dot(row, &self.found);
         }
         self.precondition(points, Some(&second));
         self.direction[0].copy_from_slice(&self.preconditioned[0]);

@@ -62,7 +62,7 @@ pub enum Solver {
     Auto,
     /// A sparse factor: computed once where the matrix stays the same.
     Direct,
-    /// Conjugate gradients, without a factor: forces of contacts and motion are found together. Not with friction, links, zones or a
+    /// Conjugate gradients, without a factor: forces of contacts and motion are found together, friction too. Not with links, zones or a
     /// static stage.
     Iterative,
 }

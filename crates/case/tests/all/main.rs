@@ -18,6 +18,7 @@ mod offset;
 mod pieces;
 mod quadrature;
 mod ranks;
+mod ranks_contacts;
 mod reactions;
 mod reductions;
 mod reference;

@@ -47,14 +47,16 @@ fn key(maps: &Maps) -> impl Iterator<Item = [f64; 4]> {
 pub(super) struct Effective {
     pub(super) now: Option<Matrices>,
     kept: Vec<Matrices>,
+    /// Those with factors of steps in which iterations have failed; in such a step the others.
+    pub(super) aside: Option<Box<Matrices>>,
     /// Number of all made so far.
-    made: u64,
+    pub(super) made: u64,
     /// Work with factors that are not kept any more.
     pub(super) retired: Work,
     /// Scratch of the curvature.
     loads: Vec<f64>,
     /// Who shares the products of iterations.
-    ranks: Ranks,
+    pub(super) ranks: Ranks,
 }
 
 /// The matrices of one size of the step.
@@ -135,6 +137,7 @@ impl Effective {
         Effective {
             now: None,
             kept: Vec::new(),
+            aside: None,
             made: 0,
             retired: Work::default(),
             loads: Vec::new(),
@@ -145,7 +148,7 @@ impl Effective {
     /// Shares the products of iterations with others. Matrices at hand are made anew.
     pub(super) fn share(&mut self, ranks: &Ranks) {
         self.ranks = ranks.clone();
-        (self.now, self.kept) = (None, Vec::new());
+        (self.now, self.kept, self.aside) = (None, Vec::new(), None);
     }
 
     /// Whether the matrices at hand are those of these maps.
@@ -182,7 +185,8 @@ impl Effective {
             Some(place) => self.kept.remove(place),
             None => {
                 self.made += 1;
-                Matrices::new(system, maps, iterated, (between, self.made, &self.ranks))?
+                let of = (between, self.made, &self.ranks);
+                Matrices::new(system, maps, iterated, of, None)?
             }
         };
         if let Some(before) = self.now.replace(next) {
@@ -316,7 +320,8 @@ impl Effective {
 
     pub(super) fn work(&self) -> Work {
         let mut work = self.retired;
-        for matrices in self.now.iter().chain(&self.kept) {
+        let aside = self.aside.as_deref();
+        for matrices in self.now.iter().chain(&self.kept).chain(aside) {
             matrices.add_work(&mut work);
         }
         work
@@ -334,12 +339,14 @@ fn is_any_linked(system: &System, parts: &[bool]) -> bool {
 }
 
 impl Matrices {
-    /// Factors the matrices of the linear parts. `made`: a number that no other matrices of the run have.
-    fn new(
+    /// Makes the matrices of the linear parts, and what solves with them. `made`: a number that no other matrices of the run have; `asked`: what solves
+    /// with them in place of what is chosen.
+    pub(super) fn new(
         system: &System,
         maps: &Maps,
         iterated: Vec<bool>,
         (between, made, ranks): (bool, u64, &Ranks),
+        asked: Option<Solver>,
     ) -> Result<Matrices, Error> {
         let (others, linear): (Vec<_>, Vec<_>) = single(iterated.len())
             .into_iter()
@@ -350,7 +357,7 @@ impl Matrices {
         let mut diagonal = vec![0.0; system.unknowns()];
         let mut held = HeldColumns::default();
         let mut solver = match (first, coupled.is_empty()) {
-            (_, true) => None,
+            (_, true) => asked,
             (0, false) => Some(tangent_solver(system, &iterated)),
             // the counts are of one kind or the other
             (_, false) => Some(Solver::Direct),

@@ -60,11 +60,17 @@ impl Driver {
         if !self.refined.holds_columns {
             compliance.update(points, &self.stacked, &system.fixed, operators);
         }
-        let several = compliance.groups().several();
+        let (several, iterate) = (compliance.groups().several(), operators.iterate());
         self.describe_candidates(Some(tangents as u32));
         let mut friction = Vec::new();
         let free = |number| self.free_along(number, &self.stacked);
         self.tangential(free, &mut friction);
+        if iterate {
+            let solved = self.find_with_friction(&friction, s);
+            self.phases.friction += begin.elapsed();
+            solved?;
+            return self.take_forces_with_friction(factor);
+        }
         if several {
             let solved = self.solve_groups_with_friction(&friction, s);
             self.phases.friction += begin.elapsed();

@@ -1,11 +1,14 @@
 //! Contact forces where matrices are solved with by iterations: forces and motion are found together.
 
+use std::sync::Arc;
+
 use carom_algebra::Error as AlgebraError;
 use carom_contact::Contact;
-use carom_nonsmooth::Condensed;
+use carom_nonsmooth::Compliance as D;
 
 use super::Driver;
 use crate::compliance::Compliance;
+use crate::coulomb::{Posed, Tangential};
 use crate::error::{Error, MeshNode};
 use crate::interface::Failure;
 use crate::operator::Operators;
@@ -43,7 +46,7 @@ impl Driver {
             }
         };
         self.saddle.get_mut().begin(lent, rows, (tolerance, load));
-        let problem = (Condensed::Iterated(&self.saddle), compliance.version);
+        let problem = (D::Iterated(&self.saddle), compliance.version);
         let solved = self.interface.solve(&self.candidate_data, problem, factors);
         let saddle = self.saddle.get_mut();
         operators.take_back(saddle.end());
@@ -60,6 +63,52 @@ impl Driver {
         }
         saddle.add_motion(factor, &mut self.vectors.half);
         self.take_forces(factor)
+    }
+
+    /// The same with friction: rows of each candidate are its normal and its tangents. `s`: factors of D p in gaps, rates and sliding.
+    pub(super) fn find_with_friction(
+        &mut self,
+        friction: &[Tangential],
+        s: [f64; 3],
+    ) -> Result<(), Error> {
+        let system = Arc::clone(&self.system);
+        let (tangents, factor) = (system.tangents(), self.maps.contact());
+        let width = 1 + tangents as u32;
+        let Some((operators, compliance)) = self.effective.both() else {
+            return Ok(());
+        };
+        let (lent, tolerance) = operators.lend();
+        let numbers = self.candidates.iter();
+        let numbers = numbers.flat_map(|&point| point * width..(point + 1) * width);
+        let rows = numbers.map(|number| compliance.row(number, operators));
+        let left = &self.vectors.left;
+        let load = |load: &mut [f64]| {
+            for (load, left) in load.iter_mut().zip(left) {
+                *load = left / factor;
+            }
+        };
+        self.saddle.get_mut().begin(lent, rows, (tolerance, load));
+        let posed = Posed {
+            candidates: &self.candidate_data,
+            friction,
+            tangents,
+            d: D::Iterated(&self.saddle),
+            s,
+            tolerance: system.nonlinear.iteration.tolerance,
+        };
+        let solved = self.coulomb.solve(&posed);
+        let saddle = self.saddle.get_mut();
+        operators.take_back(saddle.end());
+        match (solved, self.coulomb.cause.take()) {
+            (Ok(()), _) => {}
+            (Err(_), Some(cause @ AlgebraError::Iterations { unknown, .. })) => {
+                let unknown = operators.unknown_at(unknown);
+                return Err(self.not_solved(unknown, cause));
+            }
+            (Err(failure), _) => return Err(self.friction_error(failure)),
+        }
+        saddle.add_motion(factor, &mut self.vectors.half);
+        Ok(())
     }
 
     /// The error of iterations that do not end. `unknown`: the one with the largest residual.

@@ -46,7 +46,7 @@ impl Driver {
     /// No equilibrium, an element or a matrix that fails.
     pub(super) fn solve(&mut self) -> Result<(), Error> {
         match self.solve_from_guesses() {
-            Err(error) if self.effective.leave_iterations(&self.system) => {
+            Err(error) if self.leaves_iterations() => {
                 tracing::debug!(
                     "step {}: {error}; once more with factors",
                     self.state.step + 1
@@ -55,6 +55,12 @@ impl Driver {
             }
             other => other,
         }
+    }
+
+    fn leaves_iterations(&mut self) -> bool {
+        let between = self.between();
+        let (system, maps) = (&self.system, &self.maps);
+        self.effective.leave_iterations(system, maps, between)
     }
 
     fn solve_from_guesses(&mut self) -> Result<(), Error> {

@@ -19,7 +19,7 @@ const RUBBER: Elastic = Elastic {
 const N: usize = 18;
 
 /// A block of 20 577 unknowns that falls on a plate of 441, both free: one is large enough for iterations, a factor of the other costs nothing.
-fn driver(solver: Solver, capture: Capture) -> Driver {
+fn driver(solver: Solver, (capture, friction): (Capture, f64)) -> Driver {
     let mut mesh = generate::box_("block", [0.0, 0.0, 1e-4], [1.0; 3], [N; 3], false);
     let plate = generate::box_(
         "plate",
@@ -33,7 +33,7 @@ fn driver(solver: Solver, capture: Capture) -> Driver {
         let cells = mesh.groups[name].elements.clone();
         let spec = BodySpec::new(name, cells, Kinematics::Solid, RUBBER);
         ModelBody {
-            velocity: [0.0, 0.0, speed],
+            velocity: [0.2 * speed, 0.1 * speed, speed],
             ..ModelBody::new(spec)
         }
     };
@@ -46,7 +46,10 @@ fn driver(solver: Solver, capture: Capture) -> Driver {
         reading: Reading::Closed,
     });
     let primary = ModelTarget::Surface(surface(1, "plate.top"));
-    let contact = ModelContact::new("touch", surface(0, "block.bottom"), primary, law);
+    let contact = ModelContact {
+        friction,
+        ..ModelContact::new("touch", surface(0, "block.bottom"), primary, law)
+    };
     let step = 0.5 / N as f64 / RUBBER.wave_speed(Plane::Full);
     let theta = Scheme::Theta(scheme::Theta { theta: 0.5 });
     let mut model = Model {
@@ -65,9 +68,13 @@ fn difference(one: &[f64], other: &[f64]) -> f64 {
 
 #[test]
 fn bodies_that_touch_have_one_kind_of_solver_and_the_forces_of_factors() {
-    for capture in [Capture::Half, Capture::Free] {
+    for contact in [
+        (Capture::Half, 0.0),
+        (Capture::Free, 0.0),
+        (Capture::Half, 0.15),
+    ] {
         let [mut direct, mut chosen] =
-            [Solver::Direct, Solver::Auto].map(|solver| driver(solver, capture));
+            [Solver::Direct, Solver::Auto].map(|solver| driver(solver, contact));
         for _ in 0..10 {
             direct.step().unwrap();
             chosen.step().unwrap();
@@ -79,6 +86,8 @@ fn bodies_that_touch_have_one_kind_of_solver_and_the_forces_of_factors() {
         let forces = difference(&one.interface.force, &other.interface.force);
         let motion = difference(&one.motion.v, &other.motion.v);
         assert!(forces < 1e-9 && motion < 1e-9, "{forces} {motion}");
+        let [slid, same] = [one, other].map(|state| state.interface.friction.as_flattened());
+        assert!(contact.1 == 0.0 || difference(slid, same) < 1e-9);
         let closed = one.interface.force.iter().filter(|force| **force > 0.0);
         assert!(closed.count() > N * N / 2);
         let [one, other] = [&direct, &chosen].map(|driver| driver.costs().work);

@@ -32,6 +32,7 @@ mod sweep;
 mod tangential;
 #[cfg(test)]
 mod tests;
+mod together;
 mod trial;
 
 pub use posed::Posed;

@@ -51,6 +51,18 @@ pub(super) struct Diagonal {
     pub(super) free: f64,
 }
 
+impl Alone {
+    /// Of two tangents the one direction along which the candidate moves; none if it moves along both or neither.
+    pub(super) fn only_direction(&self, tangents: usize) -> Option<[f64; 2]> {
+        let [[xx, xy], [_, yy]] = self.mobile;
+        // of a projector on a line the longer column is the longer part of its direction
+        let one = (xx + yy - 1.0).abs() < 0.5;
+        let column = if xx > yy { [xx, xy] } else { [xy, yy] };
+        let size = column[0].hypot(column[1]);
+        (tangents == 2 && one).then(|| column.map(|x| x / size))
+    }
+}
+
 impl<'a> Posed<'a> {
     /// Candidates.
     pub(super) fn len(&self) -> usize {
@@ -72,6 +84,10 @@ impl<'a> Posed<'a> {
         match self.d {
             Compliance::Dense(d) => d[(self.normal(i) + k) * self.rows() + self.normal(i) + l],
             Compliance::Lumped(d) => d.block(i, k, l),
+            Compliance::Iterated(d) => {
+                let first = self.normal(i);
+                d.borrow().entry(first + k, first + l)
+            }
         }
     }
 
@@ -161,6 +177,10 @@ impl<'a> Posed<'a> {
             sliding[k] = free - pressed * across;
             size += free.powi(2) + (pressed * across).powi(2);
             trace += self.entry(i, k + 1, k + 1);
+        }
+        if let Compliance::Iterated(_) = self.d {
+            // the motion without forces is not in what slides: of a point at rest that is rounding
+            size += (self.s[2] * trace * self.friction[i].pressed).powi(2);
         }
         let least = HELD * (trace + self.entry(i, 0, 0));
         let slides = |along: f64| along.powi(2) > HELD * size;

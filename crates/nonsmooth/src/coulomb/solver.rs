@@ -5,6 +5,7 @@ use carom_laws::Status;
 use super::anderson::Anderson;
 use super::posed::Alone;
 use super::sweep::Product;
+use super::together::Rows;
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
 use crate::Compliance;
@@ -74,13 +75,16 @@ pub struct Coulomb {
     pub passes: usize,
     /// Sweeps of the last solve.
     pub sweeps: usize,
-    trial: Trial,
-    best: Trial,
-    start: Trial,
+    pub(super) trial: Trial,
+    pub(super) best: Trial,
+    pub(super) start: Trial,
     change: Vec<f64>,
-    reversals: Vec<u32>,
+    pub(super) reversals: Vec<u32>,
     /// What sweeps keep: D p, or Bᵀ p of a lumped mass.
     kept: Vec<f64>,
+    /// Why iterations have failed, where D is not known.
+    pub cause: Option<carom_algebra::Error>,
+    pub(super) rows: Rows,
     /// All entries of D where passes took over from sweeps.
     entries: Vec<f64>,
     anderson: Anderson,
@@ -100,6 +104,7 @@ impl Coulomb {
         let d = match problem.d {
             Compliance::Dense(d) => return self.solve_few((problem, d)),
             Compliance::Lumped(d) => d,
+            Compliance::Iterated(d) => return self.solve_together(problem, d),
         };
         let few = d.rows() <= FEW_ROWS;
         let sweeps = if few { BEFORE_PASSES } else { ALONE };
@@ -210,7 +215,7 @@ impl Coulomb {
         Err(self.failure())
     }
 
-    fn failure(&self) -> FrictionFailure {
+    pub(super) fn failure(&self) -> FrictionFailure {
         let (defect, candidate) = self.best.worst;
         FrictionFailure {
             candidate,
@@ -286,7 +291,7 @@ impl Coulomb {
     }
 
     /// Takes the forces of the trial over, tension cut off where the law wants it.
-    fn finish(&mut self, problem: &Posed) {
+    pub(super) fn finish(&mut self, problem: &Posed) {
         let p = |row: usize| self.trial.p[row];
         self.statuses.clone_from(&self.trial.statuses);
         self.slips.clone_from(&self.trial.slips);

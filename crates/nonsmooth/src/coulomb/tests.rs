@@ -4,6 +4,7 @@ use carom_testing::Random;
 use super::*;
 use crate::interface::{Candidate, Interface};
 use crate::{Compliance, Lumped, Unknown};
+mod together;
 
 fn candidate(law: Law, gap_free: f64) -> Candidate {
     Candidate {

@@ -217,6 +217,15 @@ impl Trial {
                     (self.product[row], self.sizes[row]) = (sum, absolute);
                 }
             }
+            Compliance::Iterated(d) => {
+                let d = d.borrow();
+                for (row, product) in self.product.iter_mut().enumerate() {
+                    *product = d.along(row);
+                }
+                self.sizes.clear();
+                self.sizes
+                    .extend(self.product.iter().map(|product| product.abs()));
+            }
             Compliance::Lumped(d) => {
                 d.sizes(&self.p, &mut self.motion, &mut self.sizes);
                 d.gather(&self.p, &mut self.motion);
@@ -230,8 +239,27 @@ impl Trial {
     /// Whether no defect is larger than the tolerance that was asked for, of the largest force. A candidate that hardly
     /// carries anything may be far from its laws in its own measure, and no step is the better for more.
     pub(super) fn is_near(&self, problem: &Posed) -> bool {
-        let largest = |values: &[f64]| values.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         self.worst.0.is_finite() && largest(&self.defects) <= problem.tolerance * largest(&self.p)
+    }
+
+    /// The largest defect over the largest force; zero without any.
+    pub(super) fn largest_defect(&self) -> f64 {
+        match largest(&self.defects) {
+            0.0 => 0.0,
+            defect => defect / largest(&self.p),
+        }
+    }
+
+    /// Whether a candidate has the statuses that it has in another trial.
+    pub(super) fn has_statuses_of(&self, i: usize, other: &Trial) -> bool {
+        self.statuses[i] == other.statuses[i] && self.slips[i] == other.slips[i]
+    }
+
+    /// Takes what another trial says of the statuses of a candidate.
+    pub(super) fn keep_status(&mut self, i: usize, other: &Trial) {
+        self.statuses[i] = other.statuses[i];
+        self.slips[i] = other.slips[i];
+        self.directions[i] = other.directions[i];
     }
 
     /// Status and defect of the normal; P - R, zero in an open point.
@@ -302,4 +330,8 @@ impl Trial {
             };
         }
     }
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, x| most.max(x.abs()))
 }

@@ -1,0 +1,79 @@
+//! Contacts of which several ranks have points.
+
+use std::sync::Arc;
+
+use carom_dynamics::{Driver, Watched};
+
+use crate::ranks::{built, compare_on_ranks, last, on_all, run_alone};
+
+/// A block between a floor that slides, with friction, a ball, and a wall that crushes; another block that strikes its corner; and a
+/// probe of the pressure on the floor.
+const CORNER: &str = r#"
+carom = 1
+[mesh]
+generate.block.box = { origin = [0.0, 0.0, 0.0005], size = [0.1, 0.08, 0.12], elements = [6, 5, 7] }
+generate.head.box = { origin = [0.03, 0.03, 0.121], size = [0.1, 0.06, 0.06], elements = [6, 4, 3] }
+[material.soft]
+density = 1000.0
+neo-hooke = { young = "5 MPa", poisson = 0.3 }
+[body.block]
+region = "block"
+material = "soft"
+initial = { velocity = [2.0, 0.5, -3.0] }
+[body.head]
+region = "head"
+material = "soft"
+initial = { velocity = [0.0, 0.0, -6.0] }
+[contact.floor]
+secondary = "block.bottom"
+obstacle.plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0], motion.velocity = [0.0, -1.0, 0.2] }
+law.velocity = {}
+friction.coulomb = 0.3
+[contact.wall]
+secondary = "block.right"
+obstacle.plane = { point = [0.1008, 0.0, 0.0], normal = [-1.0, 0.0, 0.05] }
+law.stop = { curve = [{ penetration = "1 mm", force = "400 N" }, { penetration = "3 mm", force = "600 N" }], crush = "permanent" }
+moment-about = [0.1, 0.0, 0.0]
+[contact.ball]
+secondary = "block.back"
+obstacle.sphere = { centre = [0.02, 0.13, 0.09], radius = 0.0495 }
+law.velocity = {}
+[contact.strike]
+secondary = "head.bottom"
+primary = "block.top"
+law.velocity = {}
+sliding = "finite"
+[time]
+end = "2.5 ms"
+step = { critical = 0.1 }
+scheme.central-difference = {}
+[probe.foot]
+on = "block.bottom"
+record = ["displacement", "contact"]
+[probe.side]
+on = "block.right"
+record = ["contact"]
+"#;
+
+/// Points of a block on several ranks, each of which has some of every contact with an obstacle.
+#[test]
+fn contacts_of_several_kinds_are_those_of_one_process_on_several_ranks() {
+    let shares = on_all(4, |ranks| {
+        let (_, _, built) = built(CORNER);
+        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
+        driver.share(ranks, &Watched::default()).unwrap();
+        driver.rank_share().unwrap().points
+    });
+    let (_, _, built) = built(CORNER);
+    assert_eq!(shares.iter().sum::<usize>(), built.system.points());
+    assert!(shares.iter().all(|own| *own > 0), "{shares:?}");
+    compare_on_ranks("corner", CORNER, &[2, 3, 4]);
+    let folder = tempfile::tempdir().unwrap();
+    run_alone(CORNER, folder.path());
+    let state = last(CORNER, folder.path());
+    let records = &state.records.contacts;
+    // all of them touch, and the wall is crushed: the comparison is of something
+    assert!(records.iter().all(|record| record.closings > 0));
+    assert!(records.iter().any(|record| record.energy_crushed > 0.0));
+    assert!(records.iter().any(|record| record.friction_loss() > 0.0));
+}
