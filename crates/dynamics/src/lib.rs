@@ -25,6 +25,7 @@ mod load_forces;
 mod low_rank;
 mod march;
 mod moment;
+mod of_contact;
 mod on_ranks;
 pub mod operator;
 pub mod records;
@@ -59,7 +60,8 @@ pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger, Tolerated};
 pub use load_forces::load_forces;
 pub use march::{
-    FailedProblem, Going, Observer, Outcome, Scope, Stepper, go_on, is_at_end, march, step_count,
+    FailedProblem, Going, Observer, Outcome, Scope, Stepper, Watched, go_on, is_at_end, march,
+    step_count,
 };
 pub use moment::moment;
 pub use on_ranks::OnRanks;
@@ -67,7 +69,7 @@ pub use records::{ContactRecord, Records};
 pub use report::{ContactReport, ContactSample, StepReport};
 pub use resultant::Resultant;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
-pub use shared::{SharedNodes, Watched};
+pub use shared::SharedNodes;
 pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
 pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};

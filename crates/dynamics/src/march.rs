@@ -45,12 +45,21 @@ pub trait Stepper {
 /// What somebody looks at of a state; each is in those after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Scope {
-    /// The motion of the [watched](crate::Watched) nodes; forces, gaps and statuses of contact points there.
+    /// The motion of the [watched](Watched) nodes; forces, gaps and statuses of contact points there.
     Watched,
     /// Those of the watched points too.
     Points,
     /// All of it.
     All,
+}
+
+/// What the first of several ranks is to have of a state that it does not compute itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Watched {
+    /// Nodes (system numbers) whose motion it has after each step, with the contact points there.
+    pub nodes: Vec<u32>,
+    /// Contact points that it has where somebody looks at points ([`Scope::Points`]).
+    pub points: Vec<u32>,
 }
 
 impl Scope {

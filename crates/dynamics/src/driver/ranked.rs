@@ -13,11 +13,11 @@ use carom_ranks::Ranks;
 use super::Driver;
 use super::far::Far;
 use super::leapfrog::Direct;
-use super::record::OfContact;
 use crate::error::Error;
-use crate::march::{Going, Scope};
+use crate::march::{Going, Scope, Watched};
+use crate::of_contact::OfContact;
 use crate::records::ContactRecord;
-use crate::shared::{Own, Shared, SharedNodes, Told, Watched, partition_of};
+use crate::shared::{Own, Shared, SharedNodes, Told, partition_of};
 use crate::small::Largest;
 use crate::update::Sums;
 

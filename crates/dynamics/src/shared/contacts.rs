@@ -4,10 +4,9 @@ use carom_contact::Point;
 use carom_contact::law::Status;
 use carom_ranks::{Message, Ranks};
 
-use super::Watched;
 use super::halo::{Halo, With, by_rank};
-use crate::driver::OfContact;
-use crate::march::Scope;
+use crate::march::{Scope, Watched};
+use crate::of_contact::OfContact;
 use crate::records::Records;
 use crate::state::{InterfaceState, State};
 use crate::system::System;

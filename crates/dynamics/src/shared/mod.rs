@@ -16,9 +16,9 @@ use carom_bodies::{Error as BodyError, Looks, Placement, Seen, Share, Stored};
 use carom_ranks::{Message, Ranks};
 
 use crate::blocks::{Block, blocks_of};
-use crate::driver::OfContact;
 use crate::error::Error;
-use crate::march::Scope;
+use crate::march::{Scope, Watched};
+use crate::of_contact::OfContact;
 use crate::resultant::Resultant;
 use crate::state::State;
 use crate::system::{Motion, System};
@@ -28,15 +28,6 @@ pub(crate) use homes::Own;
 use parts::Partition;
 pub use parts::SharedNodes;
 pub(crate) use parts::partition_of;
-
-/// What the first of several ranks is to have of a state that it does not compute itself.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Watched {
-    /// Nodes (system numbers) whose motion it has after each step, with the contact points there.
-    pub nodes: Vec<u32>,
-    /// Contact points that it has where somebody looks at points ([`Scope::Points`]).
-    pub points: Vec<u32>,
-}
 
 /// What a rank has of a run.
 pub(crate) struct Shared {

@@ -27,6 +27,7 @@ mod defect;
 mod newton;
 mod posed;
 mod problem;
+mod rows;
 mod solver;
 mod sweep;
 mod tangential;

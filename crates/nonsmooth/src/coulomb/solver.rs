@@ -4,8 +4,8 @@ use carom_laws::Status;
 
 use super::anderson::Anderson;
 use super::posed::Alone;
+use super::rows::Rows;
 use super::sweep::Product;
-use super::together::Rows;
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
 use crate::Compliance;
