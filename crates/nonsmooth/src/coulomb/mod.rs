@@ -20,6 +20,7 @@
 //!
 //! Where D is the product of the sparse rows of a lumped mass ([`crate::Lumped`]), sweeps are all, mixed after Anderson (`anderson.rs`): D is then as well conditioned as the
 //! masses of the nodes that touch are alike, and nothing grows faster than the number of points.
+//! Where D is not known, forces are found with the motion (`together.rs`).
 //! [`FrictionProblem::defect`] measures a solution by code that knows no solver.
 
 mod anderson;
