@@ -309,20 +309,25 @@ fn multipliers_on_faces_and_around_them() {
     }
 }
 
+/// A ball of radius 3 with this height of its centre, below the middle of the sheets.
+fn ball(height: f64) -> carom_contact::Obstacle {
+    let obstacle = carom_contact::Obstacle::from(Sphere {
+        centre: [2.5, 2.5, height],
+        radius: 3.0,
+        side: carom_contact::Side::Outside,
+    });
+    assert!(matches!(obstacle.shape, Shape::Sphere(_)));
+    obstacle
+}
+
 #[test]
 fn nodes_on_a_sphere() {
     let scene = two_sheets();
-    let sphere = Sphere {
-        centre: [2.5, 2.5, -3.0],
-        radius: 3.0,
-        side: carom_contact::Side::Outside,
-    };
-    let mut target = carom_contact::Obstacle::from(sphere);
+    let mut target = ball(-3.0);
     target.motion = carom_contact::Motion {
         translation: Some(carom_contact::Translation::Velocity([50.0; 3])),
         turn: None,
     };
-    assert!(matches!(target.shape, Shape::Sphere(_)));
     let contact = contact(Target::Rigid(target), nodes_of(&scene, 1));
     check(&scene, &contact, scene.sheets[1]);
 }
@@ -330,19 +335,12 @@ fn nodes_on_a_sphere() {
 #[test]
 fn some_nodes_on_a_sphere() {
     let scene = two_sheets();
-    let sphere = Sphere {
-        centre: [2.5, 2.5, -0.2],
-        radius: 3.0,
-        side: carom_contact::Side::Outside,
-    };
-    let target = carom_contact::Obstacle::from(sphere);
-    let contact = contact(Target::Rigid(target), nodes_of(&scene, 1));
+    let contact = contact(Target::Rigid(ball(-0.2)), nodes_of(&scene, 1));
     for (forgets, short) in [(false, false), (true, true)] {
-        let some = true;
         let way = Way {
             forgets,
             short,
-            some,
+            some: true,
         };
         let seen = compare(&scene, &contact, scene.sheets[1], way);
         assert!(

@@ -98,7 +98,7 @@ impl Ranks {
         self.place()[1]
     }
 
-    /// Whether this is the first rank, which has the contacts and writes the results.
+    /// Whether this is the first rank, which writes the results.
     pub fn is_first(&self) -> bool {
         self.rank() == 0
     }

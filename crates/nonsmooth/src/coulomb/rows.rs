@@ -28,6 +28,8 @@ pub(super) struct Rows {
     given: Vec<f64>,
     /// Of candidates that move along one tangent alone the row along it, and its direction.
     along: Vec<Option<(u32, [f64; 2])>>,
+    /// What of these is solved for: row, compliance and what it is to be.
+    further: Vec<(u32, f64, f64)>,
     /// Rows of the saddle before those of a pass, and of slipping candidates the row across their direction, with its own direction.
     count: usize,
     across: Vec<(usize, u32, [f64; 2])>,
@@ -69,7 +71,8 @@ impl Rows {
         }
         self.numbers.clear();
         self.given.resize(problem.rows(), 0.0);
-        let mut further = Vec::new();
+        let mut further = mem::take(&mut self.further);
+        further.clear();
         for i in 0..problem.len() {
             if trial.statuses[i] == Status::Open || self.cut[i] {
                 continue;
@@ -123,18 +126,20 @@ impl Rows {
                 }
             }
         }
-        for (number, shared, free) in further {
+        for &(number, shared, free) in &further {
             self.push(number, shared * saddle.diagonal(number as usize), free);
         }
-        for (i, number, of) in mem::take(&mut self.across) {
+        self.further = further;
+        let across = mem::take(&mut self.across);
+        for &(i, number, of) in &across {
             let free = &problem.friction[i].free;
             let free = -(of[0] * free[0] + of[1] * free[1]) / problem.s[2];
             // t - ρ q keeps its direction where (1 - c) t + c ρ q = 0 across it
             let c = trial.curvatures[i];
             let own = (1.0 - c) / (c * problem.weight(i) * problem.s[2]);
             self.push(number, own, free);
-            self.across.push((i, number, of));
         }
+        self.across = across;
     }
 
     /// Makes the rows across the directions of slip, along which the force of a point turns with its sliding: as that of a dashpot.
@@ -174,18 +179,18 @@ impl Rows {
     /// The forces found, into a trial.
     pub(super) fn take(&self, problem: &Posed, trial: &mut Trial) {
         trial.p.copy_from_slice(&self.given);
-        let found = self.numbers.iter().zip(&self.b);
-        let (own, further): (Vec<_>, Vec<_>) =
-            found.partition(|(number, _)| (**number as usize) < problem.rows());
-        for (number, force) in own {
-            trial.p[*number as usize] = *force;
+        let own = self
+            .numbers
+            .partition_point(|number| (*number as usize) < problem.rows());
+        for (&number, &force) in self.numbers[..own].iter().zip(&self.b) {
+            trial.p[number as usize] = force;
         }
+        let (further, forces) = (&self.numbers[own..], &self.b[own..]);
         let along = self.along.iter().enumerate();
         let along = along.filter_map(|(i, along)| along.map(|(number, of)| (i, number, of)));
         for (i, number, of) in along.chain(self.across.iter().copied()) {
-            let found = further.binary_search_by_key(&number, |(number, _)| **number);
-            if let Ok(place) = found {
-                let (row, force) = (problem.normal(i), *further[place].1);
+            if let Ok(place) = further.binary_search(&number) {
+                let (row, force) = (problem.normal(i), forces[place]);
                 trial.p[row + 1] += force * of[0];
                 trial.p[row + 2] += force * of[1];
             }
