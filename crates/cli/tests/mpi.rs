@@ -203,6 +203,65 @@ fn implicit_steps_of_several_processes_give_the_results_of_one() {
     }
 }
 
+/// A factor that PETSc has over all ranks finds contact forces as one of one process does, with as many columns: where the matrix stays, three for
+/// each node that comes near; else for each tangent. A solve takes one iteration, or two by rounding. A block that rubs on a slanting plane, of a
+/// linear material and of one whose tangents change.
+#[cfg(feature = "petsc")]
+#[test]
+fn a_factor_over_all_ranks_finds_contact_forces() {
+    let work = tempfile::tempdir().unwrap();
+    write_implicit(work.path());
+    let tangents = fs::read_to_string(work.path().join("case.toml")).unwrap();
+    let tangents = tangents.replace(
+        "law.velocity = {}",
+        "law.velocity = {}\nfriction.coulomb = 0.3",
+    );
+    let short = ["--set", "time.end=0.8 ms"];
+    for stays in [true, false] {
+        let text = match stays {
+            true => tangents.replace("neo-hooke", "elastic"),
+            false => tangents.clone(),
+        };
+        fs::write(work.path().join("case.toml"), text).unwrap();
+        let _ = fs::remove_dir_all(work.path().join("alone"));
+        run_alone(
+            work.path(),
+            &[&short[..], &["--set", "time.solver=direct"]].concat(),
+        );
+        let [with_factor, ..] = counts(&work.path().join("alone"));
+        for ranks in [2, 3] {
+            let name = format!("{stays}-{ranks}");
+            let arguments = [&["run", "case.toml", "--results", &name], &short[..]].concat();
+            let output = mpirun(work.path(), ranks, &arguments)
+                .env(
+                    "PETSC_OPTIONS",
+                    "-pc_type cholesky -pc_factor_mat_solver_type mumps",
+                )
+                .output()
+                .unwrap();
+            assert!(output.status.success(), "{}", said(&output));
+            assert_same(&work.path().join("alone"), &work.path().join(&name));
+            let [columns, iterations, steps] = counts(&work.path().join(&name));
+            assert!(columns > 0 && columns == with_factor, "{columns}");
+            // of the load and of the contact forces
+            assert!(!stays || iterations <= 4 * steps, "{iterations} in {steps}");
+        }
+    }
+}
+
+/// Columns of contact rows, iterations and steps of a run.
+#[cfg(feature = "petsc")]
+fn counts(results: &Path) -> [u64; 3] {
+    let text = fs::read_to_string(results.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let number = |group: &str, key: &str| summary[group][key].as_u64().unwrap();
+    [
+        number("counts", "contact_columns"),
+        number("counts", "matrix_products"),
+        number("time", "steps"),
+    ]
+}
+
 /// A preconditioner that PETSc does not have ends all ranks with one message: it is PETSc that solves.
 #[cfg(feature = "petsc")]
 #[test]

@@ -8,6 +8,7 @@ use carom_algebra::solver::{Cholesky, Iterative, Ordering};
 use carom_contact::{Pairing, Search};
 use carom_ranks::Ranks;
 
+use crate::distributed::Distributed;
 use crate::error::Error;
 use crate::iterated::Iterated;
 use crate::operator::{Operator, groups, unsolvable};
@@ -69,7 +70,7 @@ pub(crate) fn solver_of(operator: &Operator) -> Option<Solver> {
     match operator {
         Operator::Diagonal(_) => None,
         Operator::Factored(_) | Operator::Updated(_) => Some(Solver::Direct),
-        Operator::Iterated(_) => Some(Solver::Iterative),
+        Operator::Iterated(_) | Operator::Distributed(_) => Some(Solver::Iterative),
     }
 }
 
@@ -127,8 +128,14 @@ pub(crate) fn operator(
         Chosen::Iterative(solver) => solver,
     };
     let place = |unknown: usize| system.x[nodes[unknown] as usize];
+    let solver = Box::new(solver.on(of.ranks, (&matrix, place))?);
+    if solver.is_factored() {
+        let order = Ordering::new(&matrix, &groups(nodes), Some(&place))?;
+        let factor = Distributed::new(solver, (TOLERANCE, order.work()));
+        return Ok(Operator::Distributed(Box::new(factor)));
+    }
     Ok(Operator::Iterated(Iterated {
-        solver: Some(Box::new(solver.on(of.ranks, (&matrix, place))?)),
+        solver: Some(solver),
         tolerance: TOLERANCE,
         failed: None,
     }))

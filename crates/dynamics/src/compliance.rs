@@ -363,7 +363,7 @@ impl Compliance {
     }
 
     /// Adds the force of a point to y, before `end`.
-    pub(crate) fn add(&self, point: u32, force: f64, operators: &Operators, y: &mut [f64]) {
+    pub(crate) fn add(&self, point: u32, force: f64, operators: &mut Operators, y: &mut [f64]) {
         for (group, column) in self.columns(point) {
             operators.add(*group, column, force, y);
         }
@@ -385,6 +385,7 @@ impl Compliance {
             Column::Row(row) => 12 * row.dofs.len(),
             Column::Factored(response) => response.bytes(),
             Column::Updated(response, products) => response.bytes() + 8 * products.len(),
+            Column::Moved(row, motion) => 12 * row.dofs.len() + 8 * motion.len(),
         });
         bytes.sum::<usize>() + 8 * self.blocks.entries.len()
     }

@@ -63,17 +63,16 @@ impl Operators {
         }
     }
 
-    /// Why iterations of the last `begin` did not end, and the unknown with the largest residual.
+    /// Why a solve since the last `begin` did not end, and the unknown with the largest residual.
     pub(crate) fn failure(&mut self) -> Option<(usize, AlgebraError)> {
-        let failed = self
-            .groups
-            .iter_mut()
-            .find_map(|group| match &mut group.operator {
-                Some(Operator::Iterated(iterated)) => {
-                    Some((group.place.start, iterated.failed.take()?))
-                }
+        let failed = self.groups.iter_mut().find_map(|group| {
+            let failed = match &mut group.operator {
+                Some(Operator::Iterated(iterated)) => iterated.failed.take(),
+                Some(Operator::Distributed(factor)) => factor.failure(),
                 _ => None,
-            });
+            };
+            Some((group.place.start, failed?))
+        });
         let (place, cause) = failed?;
         let worst = match &cause {
             AlgebraError::Iterations { unknown, .. } => *unknown,

@@ -12,6 +12,7 @@ mod compliance;
 pub mod condensed;
 mod control;
 mod costs;
+mod distributed;
 mod driver;
 mod error;
 mod exchange;

@@ -7,6 +7,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::{Cholesky, FactorStats, Ordering, Response, SparseRow, gram};
 
+use crate::distributed::Distributed;
 use crate::error::{Error, MeshNode};
 use crate::iterated::Iterated;
 use crate::low_rank::LowRank;
@@ -27,6 +28,8 @@ pub(crate) enum Operator {
     /// A matrix that is solved with by iterations: y = A⁻¹ r, and Y is no more than Nᵀ. Forces of rows are found together with their motion, which is
     /// added to y at once.
     Iterated(Iterated),
+    /// A factor that an engine has over all ranks: y = A⁻¹ r, and of Y the entries at the unknowns of rows; forces of rows are kept beside y.
+    Distributed(Box<Distributed>),
 }
 
 /// What `respond` keeps of one row.
@@ -38,6 +41,8 @@ pub(crate) enum Column {
     Factored(Response),
     /// L⁻¹ Nᵀ and Hᵀ L⁻¹ Nᵀ.
     Updated(Response, Vec<f64>),
+    /// The row, and A⁻¹ Nᵀ at the unknowns of the rows met up to it.
+    Moved(SparseRow, Vec<f64>),
 }
 
 impl Operator {
@@ -62,6 +67,7 @@ impl Operator {
             Operator::Factored(factor) => factor.forward(r, y),
             Operator::Updated(updated) => updated.begin(r, y),
             Operator::Iterated(iterated) => iterated.begin(r, y),
+            Operator::Distributed(factor) => factor.begin(r, y),
         }
     }
 
@@ -84,6 +90,7 @@ impl Operator {
                 });
                 columns.collect()
             }
+            Operator::Distributed(factor) => factor.respond(rows),
         }
     }
 
@@ -108,6 +115,9 @@ impl Operator {
                 let products = g.iter().zip(h).map(|(g, h)| g * h);
                 one.dot(other) - products.sum::<f64>()
             }
+            (Operator::Distributed(factor), Column::Moved(one, x), Column::Moved(other, y)) => {
+                factor.dot((one, x), (other, y))
+            }
             _ => unreachable!("columns are made by their own operator"),
         }
     }
@@ -118,7 +128,7 @@ impl Operator {
             .iter()
             .filter_map(|column| match column {
                 Column::Factored(response) => Some(response),
-                Column::Row(_) | Column::Updated(..) => None,
+                Column::Row(_) | Column::Updated(..) | Column::Moved(..) => None,
             })
             .collect();
         if responses.len() == columns.len() {
@@ -133,7 +143,7 @@ impl Operator {
     /// N A⁻¹ r from the y of `begin`.
     pub(crate) fn free(&self, column: &Column, y: &[f64]) -> f64 {
         match column {
-            Column::Row(row) => row
+            Column::Row(row) | Column::Moved(row, _) => row
                 .dofs
                 .iter()
                 .zip(&row.coefficients)
@@ -144,7 +154,7 @@ impl Operator {
     }
 
     /// Adds the force of one row to y.
-    pub(crate) fn add(&self, column: &Column, force: f64, y: &mut [f64]) {
+    pub(crate) fn add(&mut self, column: &Column, force: f64, y: &mut [f64]) {
         match (self, column) {
             (Operator::Diagonal(a), Column::Row(row)) => {
                 for (&i, n) in row.dofs.iter().zip(&row.coefficients) {
@@ -155,6 +165,7 @@ impl Operator {
             (Operator::Updated(updated), Column::Updated(response, products)) => {
                 updated.add((response, products), force, y);
             }
+            (Operator::Distributed(factor), Column::Moved(row, _)) => factor.push(row, force),
             (Operator::Iterated(_), Column::Row(_)) => {}
             _ => unreachable!("columns are made by their own operator"),
         }
@@ -166,22 +177,35 @@ impl Operator {
             Operator::Diagonal(_) | Operator::Iterated(_) => x.copy_from_slice(y),
             Operator::Factored(factor) => factor.backward(y, x),
             Operator::Updated(updated) => updated.factor.backward(y, x),
+            Operator::Distributed(factor) => factor.end(y, x),
         }
     }
 
     /// Size and use of the factor, if there is one.
     pub(crate) fn stats(&self) -> Option<&FactorStats> {
         match self {
-            Operator::Diagonal(_) | Operator::Iterated(_) => None,
+            Operator::Diagonal(_) | Operator::Iterated(_) | Operator::Distributed(_) => None,
             Operator::Factored(factor) => Some(factor.stats()),
             Operator::Updated(updated) => Some(updated.factor.stats()),
         }
     }
 
-    /// Products with a matrix that is solved with by iterations, so far.
+    /// Entries of the factor, and additions and multiplications to make it, if there is one.
+    pub(crate) fn work(&self) -> Option<[f64; 2]> {
+        match self {
+            Operator::Distributed(factor) => Some(factor.work),
+            other => {
+                let stats = other.stats()?;
+                Some([stats.nnz_factor as f64, stats.flops])
+            }
+        }
+    }
+
+    /// Products with a matrix that is solved with by iterations, here or by an engine, so far.
     pub(crate) fn products(&self) -> usize {
         match self {
             Operator::Iterated(iterated) => iterated.solver.as_ref().map_or(0, |s| s.products()),
+            Operator::Distributed(factor) => factor.iterations(),
             Operator::Diagonal(_) | Operator::Factored(_) | Operator::Updated(_) => 0,
         }
     }
@@ -334,9 +358,10 @@ impl Operators {
         let (group, _) = self.home(unknown);
         match self.operator(group) {
             Operator::Diagonal(_) => unknown,
-            Operator::Factored(_) | Operator::Updated(_) | Operator::Iterated(_) => {
-                self.unknowns() + group
-            }
+            Operator::Factored(_)
+            | Operator::Updated(_)
+            | Operator::Iterated(_)
+            | Operator::Distributed(_) => self.unknowns() + group,
         }
     }
 
@@ -371,9 +396,11 @@ impl Operators {
     }
 
     /// Adds the force of one row to the y of `begin`.
-    pub(crate) fn add(&self, group: usize, column: &Column, force: f64, y: &mut [f64]) {
-        let place = self.groups[group].place.clone();
-        self.operator(group).add(column, force, &mut y[place]);
+    pub(crate) fn add(&mut self, group: usize, column: &Column, force: f64, y: &mut [f64]) {
+        let group = &mut self.groups[group];
+        if let Some(operator) = &mut group.operator {
+            operator.add(column, force, &mut y[group.place.clone()]);
+        }
     }
 
     /// Products with matrices that are solved with by iterations, so far.

@@ -59,6 +59,7 @@ unsafe extern "C" {
     ) -> Code;
     fn KSPGetPC(solver: Handle, preconditioner: *mut Handle) -> Code;
     fn PCSetType(preconditioner: Handle, kind: *const c_char) -> Code;
+    fn PCGetType(preconditioner: Handle, kind: *mut *const c_char) -> Code;
     fn KSPSetOperators(solver: Handle, matrix: Handle, of_preconditioner: Handle) -> Code;
     fn KSPSetFromOptions(solver: Handle) -> Code;
     fn KSPSolve(solver: Handle, b: Handle, x: Handle) -> Code;
@@ -66,12 +67,29 @@ unsafe extern "C" {
     fn KSPGetIterationNumber(solver: Handle, iterations: *mut c_int) -> Code;
     fn KSPGetResidualNorm(solver: Handle, norm: *mut f64) -> Code;
     fn KSPDestroy(solver: *mut Handle) -> Code;
+    fn KSPSetUp(solver: Handle) -> Code;
+    fn PCMatApply(preconditioner: Handle, loads: Handle, motions: Handle) -> Code;
+    fn MatCreateDense(
+        comm: MPI_Comm,
+        m: c_int,
+        n: c_int,
+        rows: c_int,
+        columns: c_int,
+        values: *mut f64,
+        matrix: *mut Handle,
+    ) -> Code;
+    fn MatAssemblyBegin(matrix: Handle, kind: c_int) -> Code;
+    fn MatAssemblyEnd(matrix: Handle, kind: c_int) -> Code;
 }
 
 /// `KSP_NORM_NATURAL`: of the residual in the norm of the preconditioner.
 const NATURAL: c_int = 3;
 /// `MAT_SPD`.
 const POSITIVE_DEFINITE: c_int = 15;
+/// `MAT_FINAL_ASSEMBLY`.
+const FINAL: c_int = 0;
+/// `PETSC_DECIDE`.
+const DECIDE: c_int = -1;
 /// `PETSC_DEFAULT` of a real number.
 const DEFAULT: f64 = -2.0;
 /// Iterations after which a solve has failed.
@@ -131,6 +149,8 @@ pub struct Solver {
     solver: Handle,
     x: Handle,
     b: Handle,
+    /// Whether the preconditioner is a factor.
+    factored: bool,
 }
 
 // SAFETY: a run moves to another thread as a whole; the thread that steps is the one that calls PETSc.
@@ -151,6 +171,7 @@ impl Solver {
             solver: null_mut(),
             x: null_mut(),
             b: null_mut(),
+            factored: false,
         };
         engine.make_matrix(rows)?;
         engine.add_rigid_motions(rows)?;
@@ -210,8 +231,12 @@ impl Solver {
             told(KSPSetNormType(self.solver, NATURAL))?;
             told(KSPGetPC(self.solver, &raw mut preconditioner))?;
             told(PCSetType(preconditioner, kind.as_ptr()))?;
-            told(KSPSetFromOptions(self.solver))
+            told(KSPSetFromOptions(self.solver))?;
+            let mut kind = std::ptr::null();
+            told(PCGetType(preconditioner, &raw mut kind))?;
+            self.factored = !kind.is_null() && [c"cholesky", c"lu"].contains(&CStr::from_ptr(kind));
         }
+        Ok(())
     }
 
     fn solve_own(
@@ -249,6 +274,40 @@ impl Solver {
 }
 
 impl Engine for Solver {
+    fn is_factor(&self) -> bool {
+        self.factored
+    }
+
+    fn sweep(&mut self, loads: &mut [f64], count: usize) -> Result<(), String> {
+        let all = self.starts.last().copied().unwrap_or(0);
+        let own = self.starts[self.ranks.rank() + 1] - self.starts[self.ranks.rank()];
+        let mut motions = vec![0.0; loads.len()];
+        let [mut b, mut x] = [Dense(null_mut()), Dense(null_mut())];
+        let mut preconditioner = null_mut();
+        // SAFETY: both matrices have `count` columns of the own rows, in memory that outlives them.
+        unsafe {
+            for (matrix, values) in [(&mut b, &mut *loads), (&mut x, &mut motions)] {
+                told(MatCreateDense(
+                    PETSC_COMM_WORLD,
+                    own as c_int,
+                    DECIDE,
+                    all as c_int,
+                    count as c_int,
+                    values.as_mut_ptr(),
+                    &raw mut matrix.0,
+                ))?;
+                told(MatAssemblyBegin(matrix.0, FINAL))?;
+                told(MatAssemblyEnd(matrix.0, FINAL))?;
+            }
+            told(KSPSetUp(self.solver))?;
+            told(KSPGetPC(self.solver, &raw mut preconditioner))?;
+            told(PCMatApply(preconditioner, b.0, x.0))?;
+        }
+        drop((b, x));
+        loads.copy_from_slice(&motions);
+        Ok(())
+    }
+
     fn solve(&mut self, b: &[f64], x: &mut [f64], tolerance: f64) -> Result<usize, Unsolved> {
         let mut ended = Unsolved {
             iterations: 0,
@@ -261,6 +320,16 @@ impl Engine for Solver {
             Ok(()) => Ok(ended.iterations),
             Err(cause) => Err(Unsolved { cause, ..ended }),
         }
+    }
+}
+
+/// Columns whose rows ranks share.
+struct Dense(Handle);
+
+impl Drop for Dense {
+    fn drop(&mut self) {
+        // SAFETY: it is PETSc's own or null.
+        let _ = unsafe { MatDestroy(&raw mut self.0) };
     }
 }
 

@@ -19,6 +19,15 @@ pub struct OwnRows<'a> {
 
 /// Solves with a matrix whose rows ranks share.
 pub trait Engine: Send + Sync {
+    /// Whether a factor of the matrix is its preconditioner, so that a solve costs two sweeps or so.
+    fn is_factor(&self) -> bool;
+
+    /// Replaces the own rows of `count` loads, one load after the other, by those of their motions, as the factor gives them.
+    ///
+    /// # Errors
+    /// What the engine says.
+    fn sweep(&mut self, loads: &mut [f64], count: usize) -> Result<(), String>;
+
     /// x of A x = b, whole on all ranks, and the iterations taken. They end where the residual falls below `tolerance` times that of x = 0,
     /// in the norm of the preconditioner.
     ///

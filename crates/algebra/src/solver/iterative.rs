@@ -9,6 +9,7 @@ use std::ops::Range;
 use carom_ranks::{Engine, OwnRows, Ranks};
 use rayon::prelude::*;
 
+use super::response::SparseRow;
 use super::symmetric_blocks::SymmetricBlocks;
 use crate::dense::DenseCholesky;
 use crate::reduce::dot;
@@ -22,6 +23,9 @@ const PATIENCE_AFAR: usize = 600;
 
 /// Factor of the tolerance up to which a residual that falls no further is a solution.
 const NEAR: f64 = 1e3;
+
+/// Columns that an engine solves for together.
+const TOGETHER: usize = 64;
 
 /// Numbers of each unknown that an iteration reads or writes beside the product and the blocks of the preconditioner.
 const VECTORS: usize = 16;
@@ -157,6 +161,52 @@ impl Iterative {
         self.inverses = inverses(matrix, self.size)?;
         self.matrix.renew(matrix);
         self.take_engine(matrix)
+    }
+
+    /// Whether an engine solves with a factor.
+    pub fn is_factored(&self) -> bool {
+        self.engine
+            .as_ref()
+            .is_some_and(|engine| engine.is_factor())
+    }
+
+    /// A⁻¹ nᵀ of each row n at some unknowns, one row after the other, by the factor of an engine; whole on all ranks.
+    ///
+    /// # Errors
+    /// [`Error::Engine`].
+    pub fn columns(&mut self, rows: &[SparseRow], at: &[u32]) -> Result<Vec<f64>, Error> {
+        let mut columns = vec![0.0; rows.len() * at.len()];
+        let Some(engine) = &mut self.engine else {
+            return Ok(columns);
+        };
+        let starts = self.ranks.starts(self.n / self.size);
+        let rank = self.ranks.rank();
+        let own = self.size * starts[rank]..self.size * starts[rank + 1];
+        let mut solved = Ok(());
+        let mut loads = Vec::new();
+        let batches = columns.chunks_mut((TOGETHER * at.len()).max(1));
+        for (rows, columns) in rows.chunks(TOGETHER).zip(batches) {
+            loads.clear();
+            loads.resize(rows.len() * own.len(), 0.0);
+            for (k, row) in rows.iter().enumerate() {
+                for (&unknown, n) in row.dofs.iter().zip(&row.coefficients) {
+                    if own.contains(&(unknown as usize)) {
+                        loads[k * own.len() + unknown as usize - own.start] += n;
+                    }
+                }
+            }
+            solved = solved.and(engine.sweep(&mut loads, rows.len()));
+            for (k, column) in columns.chunks_mut(at.len().max(1)).enumerate() {
+                for (entry, &unknown) in column.iter_mut().zip(at) {
+                    if own.contains(&(unknown as usize)) {
+                        *entry = loads[k * own.len() + unknown as usize - own.start];
+                    }
+                }
+            }
+            self.ranks.reduce(columns, &mut []);
+        }
+        solved.map_err(|cause| Error::Engine { cause })?;
+        Ok(columns)
     }
 
     /// Number of unknowns.

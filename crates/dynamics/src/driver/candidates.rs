@@ -26,8 +26,7 @@ impl Driver {
                 true => self.leave_solve(),
                 false => self.begin_solve()?,
             }
-            self.solve_candidates()?;
-            self.end_iteration();
+            self.find_forces()?;
             self.look_further();
             if !self.add_missed() {
                 break;
@@ -39,9 +38,18 @@ impl Driver {
     /// The motion `dx` and the contact forces of a pass with the forces in `work` and the columns that are at hand.
     pub(super) fn solve_with_columns(&mut self) -> Result<(), Error> {
         self.begin_solve()?;
-        self.solve_candidates()?;
-        self.end_iteration();
-        Ok(())
+        self.find_forces()
+    }
+
+    /// Contact forces, and the motion with them.
+    fn find_forces(&mut self) -> Result<(), Error> {
+        let solved = self.solve_candidates();
+        if solved.is_ok() {
+            self.end_iteration();
+        }
+        // a column that could not be solved for comes before what follows from it
+        self.solves_ended()?;
+        solved
     }
 
     /// Forces of the iteration without those of contacts, into `work`.
@@ -70,15 +78,22 @@ impl Driver {
     /// Iterations that do not end.
     fn begin_solve(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
-        let mut failure = None;
         if let Some((operators, _)) = self.effective.both() {
             operators.begin(&self.vectors.work, &mut self.vectors.half);
-            failure = operators.failure();
         }
         self.vectors.left.clear();
         self.hold_links();
         self.phases.sweeps += begin.elapsed();
-        match failure {
+        self.solves_ended()
+    }
+
+    /// Whether all solves since the last begin have ended.
+    ///
+    /// # Errors
+    /// Iterations that did not.
+    fn solves_ended(&mut self) -> Result<(), Error> {
+        let operators = self.effective.both();
+        match operators.and_then(|(operators, _)| operators.failure()) {
             None => Ok(()),
             Some((unknown, cause)) => Err(self.not_solved(unknown, cause)),
         }

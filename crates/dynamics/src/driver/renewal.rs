@@ -116,6 +116,7 @@ impl Matrices {
                     solver: Some(solver),
                     ..
                 })) => solver.renew(free),
+                Some(Operator::Distributed(factor)) => factor.renew(free),
                 other => {
                     let of = Use {
                         part: None,
