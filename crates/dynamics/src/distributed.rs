@@ -4,8 +4,6 @@ use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::{Iterative, SparseRow};
 
-use crate::operator::Column;
-
 /// A matrix whose factor an engine has over all ranks. It gives the motion of a whole load and no half of a solve, so that a step with contact
 /// costs two solves, of its load and of its contact forces, and each row one more when it is met, many together. All ranks call each solve.
 pub(crate) struct Distributed {
@@ -57,7 +55,7 @@ impl Distributed {
     }
 
     /// The rows, each with A⁻¹ Nᵀ at the unknowns of all rows met so far.
-    pub(crate) fn respond(&mut self, rows: Vec<SparseRow>) -> Vec<Column> {
+    pub(crate) fn respond(&mut self, rows: Vec<SparseRow>) -> Vec<(SparseRow, Vec<f64>)> {
         for &unknown in rows.iter().flat_map(|row| &row.dofs) {
             let place = &mut self.places[unknown as usize];
             if *place == u32::MAX {
@@ -73,7 +71,7 @@ impl Distributed {
         let motions = motions.chunks(self.met.len().max(1));
         let columns = rows.into_iter().zip(motions);
         columns
-            .map(|(row, motion)| Column::Moved(row, motion.to_vec()))
+            .map(|(row, motion)| (row, motion.to_vec()))
             .collect()
     }
 

@@ -90,7 +90,12 @@ impl Operator {
                 });
                 columns.collect()
             }
-            Operator::Distributed(factor) => factor.respond(rows),
+            Operator::Distributed(factor) => {
+                let moved = factor.respond(rows).into_iter();
+                moved
+                    .map(|(row, motion)| Column::Moved(row, motion))
+                    .collect()
+            }
         }
     }
 
