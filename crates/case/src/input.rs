@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use carom_mesh::read::file;
+use carom_quantities::nearest;
 
 use crate::error::Problem;
 
@@ -44,10 +45,9 @@ impl Input {
             }]);
         }
         let bytes = file::regular(path, LARGEST).map_err(|cause| {
-            vec![Problem::new(
-                "",
-                format!("cannot read the case file `{name}`: {cause}"),
-            )]
+            let problem = Problem::new("", format!("cannot read the case file `{name}`: {cause}"));
+            let nearest = meant(path).map(|near| near.display().to_string());
+            vec![Problem { nearest, ..problem }]
         })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let bytes = error.as_bytes();
@@ -92,4 +92,28 @@ impl Input {
             folder: PathBuf::new(),
         }
     }
+}
+
+/// The file that a path was meant to be: with the nearest name there is in place of the first part that is missing.
+fn meant(path: &Path) -> Option<PathBuf> {
+    let missing = path.ancestors().filter(|part| *part != Path::new(""));
+    let missing = missing.take_while(|part| !part.exists()).last()?;
+    let folder = missing.parent()?;
+    // the folder of a name alone is the one at hand
+    let entries = match folder == Path::new("") {
+        true => Path::new(".").read_dir(),
+        false => folder.read_dir(),
+    };
+    let names = entries.ok()?.flatten();
+    let names: Vec<String> = names
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .collect();
+    let found = missing.file_name()?.to_str()?;
+    let near = folder.join(nearest(found, names.iter().map(String::as_str))?);
+    let rest = path.strip_prefix(missing).ok()?;
+    let near = match rest == Path::new("") {
+        true => near,
+        false => near.join(rest),
+    };
+    near.is_file().then_some(near)
 }

@@ -57,6 +57,32 @@ fn a_case_file_beyond_its_bound_is_named() {
     );
 }
 
+/// A case file that is not there: the one that was meant is told where there is one with nearly this name, in the folder or in one with nearly its name.
+#[test]
+fn a_case_file_that_is_missing_is_met_with_the_one_that_was_meant() {
+    let work = tempfile::tempdir().unwrap();
+    fs::create_dir(work.path().join("two-bars")).unwrap();
+    fs::write(work.path().join("two-bars/case.toml"), BAR).unwrap();
+    for (asked, meant) in [
+        ("two-bars/cas.toml", Some("two-bars/case.toml")),
+        ("two-bar/case.toml", Some("two-bars/case.toml")),
+        ("two-bar/cases.toml", None),
+        ("else.toml", None),
+    ] {
+        let output = carom(work.path(), &["check", asked]);
+        assert_eq!(output.status.code(), Some(2));
+        let said = text(&output);
+        assert!(
+            said.contains(&format!("cannot read the case file `{asked}`")),
+            "{said}"
+        );
+        match meant {
+            Some(meant) => assert!(said.contains(&format!("did you mean `{meant}`?")), "{said}"),
+            None => assert!(!said.contains("did you mean"), "{said}"),
+        }
+    }
+}
+
 /// The cells of a column of a table.
 fn column(table: &Path, name: &str) -> Vec<String> {
     let table = fs::read_to_string(table).unwrap();
