@@ -66,7 +66,8 @@ impl Distributed {
         let motions = self.solver.columns(&rows, &self.met);
         let motions = motions.unwrap_or_else(|cause| {
             self.failed.get_or_insert(cause);
-            vec![0.0; rows.len() * self.met.len()]
+            // whoever meets such a column again fails too
+            vec![f64::NAN; rows.len() * self.met.len()]
         });
         let motions = motions.chunks(self.met.len().max(1));
         let columns = rows.into_iter().zip(motions);
