@@ -203,7 +203,7 @@ fn implicit_steps_of_several_processes_give_the_results_of_one() {
     }
 }
 
-/// A factor that PETSc has over all ranks finds contact forces as one of one process does, with as many columns: where the matrix stays, three for
+/// A factor that PETSc has over all ranks finds contact forces as one of one process does, with as many factorisations and columns: where the matrix stays, three for
 /// each node that comes near; else for each tangent. A solve takes one iteration, or two by rounding. A block that rubs on a slanting plane, of a
 /// linear material and of one whose tangents change.
 #[cfg(feature = "petsc")]
@@ -228,7 +228,7 @@ fn a_factor_over_all_ranks_finds_contact_forces() {
             work.path(),
             &[&short[..], &["--set", "time.solver=direct"]].concat(),
         );
-        let [with_factor, ..] = counts(&work.path().join("alone"));
+        let [with_factor, made, ..] = counts(&work.path().join("alone"));
         for ranks in [2, 3] {
             let name = format!("{stays}-{ranks}");
             let arguments = [&["run", "case.toml", "--results", &name], &short[..]].concat();
@@ -241,23 +241,25 @@ fn a_factor_over_all_ranks_finds_contact_forces() {
                 .unwrap();
             assert!(output.status.success(), "{}", said(&output));
             assert_same(&work.path().join("alone"), &work.path().join(&name));
-            let [columns, iterations, steps] = counts(&work.path().join(&name));
+            let [columns, factors, sweeps, steps] = counts(&work.path().join(&name));
             assert!(columns > 0 && columns == with_factor, "{columns}");
-            // of the load and of the contact forces
-            assert!(!stays || iterations <= 4 * steps, "{iterations} in {steps}");
+            assert_eq!(factors, made);
+            // of the load and of the contact forces, a solve of two iterations each, which are three pairs of sweeps
+            assert!(!stays || sweeps <= 12 * (steps + 1), "{sweeps} in {steps}");
         }
     }
 }
 
-/// Columns of contact rows, iterations and steps of a run.
+/// Columns of contact rows, factorisations, sweeps and steps of a run.
 #[cfg(feature = "petsc")]
-fn counts(results: &Path) -> [u64; 3] {
+fn counts(results: &Path) -> [u64; 4] {
     let text = fs::read_to_string(results.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     let number = |group: &str, key: &str| summary[group][key].as_u64().unwrap();
     [
         number("counts", "contact_columns"),
-        number("counts", "matrix_products"),
+        number("counts", "factorisations"),
+        number("counts", "sweeps"),
         number("time", "steps"),
     ]
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
-use carom_algebra::solver::{Cholesky, Iterative, Ordering};
+use carom_algebra::solver::{Cholesky, FactorStats, Iterative, Ordering};
 use carom_contact::{Pairing, Search};
 use carom_ranks::Ranks;
 
@@ -131,7 +131,7 @@ pub(crate) fn operator(
     let solver = Box::new(solver.on(of.ranks, (&matrix, place))?);
     if solver.is_factored() {
         let order = Ordering::new(&matrix, &groups(nodes), Some(&place))?;
-        let factor = Distributed::new(solver, (TOLERANCE, order.work()));
+        let factor = Distributed::new(solver, (TOLERANCE, FactorStats::counted(&order)));
         return Ok(Operator::Distributed(Box::new(factor)));
     }
     Ok(Operator::Iterated(Iterated {

@@ -2,15 +2,15 @@
 
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
-use carom_algebra::solver::{Iterative, SparseRow};
+use carom_algebra::solver::{FactorStats, Iterative, SparseRow};
 
 /// A matrix whose factor an engine has over all ranks. It gives the motion of a whole load and no half of a solve, so that a step with contact
 /// costs two solves, of its load and of its contact forces, and each row one more when it is met, many together. All ranks call each solve.
 pub(crate) struct Distributed {
     solver: Box<Iterative>,
     tolerance: f64,
-    /// Entries of a factor of the matrix, and additions and multiplications to make it, as counted for one process.
-    pub(crate) work: [f64; 2],
+    /// Size of a factor in one process, and use of that of the engine.
+    stats: FactorStats,
     /// Why the first solve since `begin` that did not end has not.
     failed: Option<AlgebraError>,
     /// Unknowns of the rows met so far, as they were met, and the place of each unknown among them.
@@ -23,13 +23,17 @@ pub(crate) struct Distributed {
 }
 
 impl Distributed {
-    /// `tolerance`: residual over the load at which solves end.
-    pub(crate) fn new(solver: Box<Iterative>, (tolerance, work): (f64, [f64; 2])) -> Distributed {
+    /// `tolerance`: residual over the load at which solves end; `stats`: size of a factor, not made yet.
+    pub(crate) fn new(
+        solver: Box<Iterative>,
+        (tolerance, mut stats): (f64, FactorStats),
+    ) -> Distributed {
         let n = solver.unknowns();
+        stats.factorisations = 1;
         Distributed {
             solver,
             tolerance,
-            work,
+            stats,
             failed: None,
             met: Vec::new(),
             places: vec![u32::MAX; n],
@@ -44,12 +48,14 @@ impl Distributed {
     /// # Errors
     /// What the engine says.
     pub(crate) fn renew(&mut self, matrix: &Csr) -> Result<(), AlgebraError> {
+        self.stats.factorisations += 1;
         self.solver.renew(matrix)
     }
 
     /// y = A⁻¹ r.
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
-        self.failed = self.solver.solve(r, y, self.tolerance).err();
+        let solved = self.solver.solve(r, y, self.tolerance);
+        self.failed = self.count(solved).err();
         self.load.fill(0.0);
         self.loaded = false;
     }
@@ -63,6 +69,7 @@ impl Distributed {
                 self.met.push(unknown);
             }
         }
+        self.stats.responses += rows.len();
         let motions = self.solver.columns(&rows, &self.met);
         let motions = motions.unwrap_or_else(|cause| {
             self.failed.get_or_insert(cause);
@@ -105,7 +112,7 @@ impl Distributed {
         let solved = self
             .solver
             .solve(&self.load, &mut self.motion, self.tolerance);
-        if let Err(cause) = solved {
+        if let Err(cause) = self.count(solved) {
             self.failed.get_or_insert(cause);
         }
         for (x, motion) in x.iter_mut().zip(&self.motion) {
@@ -120,8 +127,15 @@ impl Distributed {
         self.failed.take()
     }
 
-    /// Iterations of the engine so far.
-    pub(crate) fn iterations(&self) -> usize {
-        self.solver.products()
+    /// Size and use of the factor.
+    pub(crate) fn stats(&self) -> &FactorStats {
+        &self.stats
+    }
+
+    /// Counts the sweeps of a solve that ended with so many iterations: two for each, and for the residual before.
+    fn count(&mut self, solved: Result<usize, AlgebraError>) -> Result<(), AlgebraError> {
+        let iterations = solved?;
+        self.stats.sweeps += 2 * (iterations + 1);
+        Ok(())
     }
 }

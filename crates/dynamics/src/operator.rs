@@ -189,29 +189,21 @@ impl Operator {
     /// Size and use of the factor, if there is one.
     pub(crate) fn stats(&self) -> Option<&FactorStats> {
         match self {
-            Operator::Diagonal(_) | Operator::Iterated(_) | Operator::Distributed(_) => None,
+            Operator::Diagonal(_) | Operator::Iterated(_) => None,
+            Operator::Distributed(factor) => Some(factor.stats()),
             Operator::Factored(factor) => Some(factor.stats()),
             Operator::Updated(updated) => Some(updated.factor.stats()),
         }
     }
 
-    /// Entries of the factor, and additions and multiplications to make it, if there is one.
-    pub(crate) fn work(&self) -> Option<[f64; 2]> {
-        match self {
-            Operator::Distributed(factor) => Some(factor.work),
-            other => {
-                let stats = other.stats()?;
-                Some([stats.nnz_factor as f64, stats.flops])
-            }
-        }
-    }
-
-    /// Products with a matrix that is solved with by iterations, here or by an engine, so far.
+    /// Products with a matrix that is solved with by iterations, so far.
     pub(crate) fn products(&self) -> usize {
         match self {
             Operator::Iterated(iterated) => iterated.solver.as_ref().map_or(0, |s| s.products()),
-            Operator::Distributed(factor) => factor.iterations(),
-            Operator::Diagonal(_) | Operator::Factored(_) | Operator::Updated(_) => 0,
+            Operator::Diagonal(_)
+            | Operator::Factored(_)
+            | Operator::Updated(_)
+            | Operator::Distributed(_) => 0,
         }
     }
 

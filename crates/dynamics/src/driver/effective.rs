@@ -209,14 +209,14 @@ impl Effective {
     pub(super) fn price(&self) -> Option<f64> {
         let now = self.now.as_ref()?;
         let groups = &now.operators.groups[now.first..];
-        let (mut flops, mut entries) = (0.0, 0.0);
+        let (mut flops, mut entries) = (0.0, 0);
         for group in groups {
-            if let Some([more_entries, more_flops]) = group.operator.as_ref()?.work() {
-                flops += more_flops;
-                entries += more_entries;
+            if let Some(stats) = group.operator.as_ref()?.stats() {
+                flops += stats.flops;
+                entries += stats.nnz_factor;
             }
         }
-        (entries > 0.0).then(|| flops / (4.0 * entries))
+        (entries > 0).then(|| flops / (4.0 * entries as f64))
     }
 
     /// Makes the matrices that are not those of linear parts, and their factors, anew.
