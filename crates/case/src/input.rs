@@ -99,15 +99,7 @@ fn meant(path: &Path) -> Option<PathBuf> {
     let missing = path.ancestors().filter(|part| *part != Path::new(""));
     let missing = missing.take_while(|part| !part.exists()).last()?;
     let folder = missing.parent()?;
-    // the folder of a name alone is the one at hand
-    let entries = match folder == Path::new("") {
-        true => Path::new(".").read_dir(),
-        false => folder.read_dir(),
-    };
-    let names = entries.ok()?.flatten();
-    let names: Vec<String> = names
-        .filter_map(|entry| entry.file_name().into_string().ok())
-        .collect();
+    let names = names_in(folder);
     let found = missing.file_name()?.to_str()?;
     let near = folder.join(nearest(found, names.iter().map(String::as_str))?);
     let rest = path.strip_prefix(missing).ok()?;
@@ -116,4 +108,18 @@ fn meant(path: &Path) -> Option<PathBuf> {
         false => near.join(rest),
     };
     near.is_file().then_some(near)
+}
+
+/// Names of what is in a folder, in their order; none if it cannot be read.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+    // the folder of a name alone is the one at hand
+    let folder = match folder == Path::new("") {
+        true => Path::new("."),
+        false => folder,
+    };
+    let entries = folder.read_dir().into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names: Vec<String> = names.collect();
+    names.sort_unstable();
+    names
 }

@@ -56,8 +56,7 @@ impl Distributed {
     pub(crate) fn begin(&mut self, r: &[f64], y: &mut [f64]) {
         let solved = self.solver.solve(r, y, self.tolerance);
         self.failed = self.count(solved).err();
-        self.load.fill(0.0);
-        self.loaded = false;
+        self.unload();
     }
 
     /// The rows, each with A⁻¹ Nᵀ at the unknowns of all rows met so far.
@@ -118,8 +117,14 @@ impl Distributed {
         for (x, motion) in x.iter_mut().zip(&self.motion) {
             *x += motion;
         }
-        self.load.fill(0.0);
-        self.loaded = false;
+        self.unload();
+    }
+
+    fn unload(&mut self) {
+        if self.loaded {
+            self.load.fill(0.0);
+            self.loaded = false;
+        }
     }
 
     /// Why a solve since the last `begin` did not end.

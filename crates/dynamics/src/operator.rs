@@ -395,8 +395,9 @@ impl Operators {
     /// Adds the force of one row to the y of `begin`.
     pub(crate) fn add(&mut self, group: usize, column: &Column, force: f64, y: &mut [f64]) {
         let group = &mut self.groups[group];
-        if let Some(operator) = &mut group.operator {
-            operator.add(column, force, &mut y[group.place.clone()]);
+        match &mut group.operator {
+            Some(operator) => operator.add(column, force, &mut y[group.place.clone()]),
+            None => unreachable!("no group is pushed before its matrix is factored"),
         }
     }
 

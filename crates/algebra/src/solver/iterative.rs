@@ -173,12 +173,13 @@ impl Iterative {
     /// A⁻¹ nᵀ of each row n at some unknowns, one row after the other, by the factor of an engine; whole on all ranks.
     ///
     /// # Errors
-    /// [`Error::Engine`].
+    /// [`Error::Engine`], without an engine too.
     pub fn columns(&mut self, rows: &[SparseRow], at: &[u32]) -> Result<Vec<f64>, Error> {
-        let mut columns = vec![0.0; rows.len() * at.len()];
         let Some(engine) = &mut self.engine else {
-            return Ok(columns);
+            let cause = "there is none that has a factor".to_owned();
+            return Err(Error::Engine { cause });
         };
+        let mut columns = vec![0.0; rows.len() * at.len()];
         let starts = self.ranks.starts(self.n / self.size);
         let rank = self.ranks.rank();
         let own = self.size * starts[rank]..self.size * starts[rank + 1];

@@ -7,7 +7,7 @@ use carom_quantities::{Vector, units};
 
 use super::{Builder, dimensions};
 use crate::error::Problem;
-use crate::input::Input;
+use crate::input::{Input, names_in};
 use crate::rules::MOST_NODES;
 use crate::schema::{Count, Part, Placed};
 
@@ -161,18 +161,13 @@ impl Builder<'_> {
 
 /// Names of the meshes in the folder of a file, in their order.
 fn beside(path: &Path) -> Vec<String> {
-    // the folder of a name alone is the one at hand
-    let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let entries = folder.unwrap_or(Path::new(".")).read_dir();
-    let names = entries.into_iter().flatten().flatten();
-    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    let mut names = path.parent().map_or(Vec::new(), names_in);
     let is_mesh = |name: &String| {
         let extension = Path::new(name).extension().unwrap_or_default();
         let extension = extension.to_string_lossy().to_lowercase();
         read::EXTENSIONS.contains(&extension.as_str())
     };
-    let mut names: Vec<String> = names.filter(is_mesh).collect();
-    names.sort_unstable();
+    names.retain(is_mesh);
     names
 }
 
