@@ -131,6 +131,8 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
         own.elements as u64,
         own.nodes as u64,
         own.points as u64,
+        own.looked_points as u64,
+        own.contact_looks as u64,
         own.halo_bytes,
         ranks.sent_bytes(),
     ];
@@ -140,8 +142,10 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
         elements: most[0] as usize,
         nodes: most[1] as usize,
         points: most[2] as usize,
-        halo_bytes: most[3] as u64,
-        sent_bytes: most[4] as u64,
+        looked_points: most[3] as usize,
+        contact_looks: most[4] as usize,
+        halo_bytes: most[5] as u64,
+        sent_bytes: most[6] as u64,
         shared_nodes: own.shared_nodes,
     }
 }

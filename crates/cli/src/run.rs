@@ -238,6 +238,8 @@ fn busiest(share: &RankShare) -> String {
         elements,
         nodes,
         points,
+        looked_points,
+        contact_looks,
         halo_bytes,
         sent_bytes,
         shared_nodes: shared,
@@ -260,8 +262,14 @@ fn busiest(share: &RankShare) -> String {
         }
         (None, _) => format!("planes ({} shared nodes)", shared.by_planes),
     };
+    let looked = match looked_points < points || *contact_looks > 1 {
+        true => format!(
+            " (at most {looked_points} near something at a time, shared out {contact_looks} times)"
+        ),
+        false => String::new(),
+    };
     format!(
-        "ranks: at most {elements} elements, {nodes} nodes and {points} contact points each, shared out by {by}; {halo_bytes} bytes sent a step and {:.3} MB in all",
+        "ranks: at most {elements} elements, {nodes} nodes and {points} contact points{looked} each, shared out by {by}; {halo_bytes} bytes sent a step and {:.3} MB in all",
         *sent_bytes as f64 / 1e6
     )
 }

@@ -150,6 +150,35 @@ impl Sight {
         Sight { parts, ..self }
     }
 
+    /// The views of some faces of the target alone, by their numbers, ascending.
+    pub(crate) fn with_some_faces(&self, kept: &[u32]) -> Sight {
+        let parts = self.parts.as_ref().map(|parts| Parts {
+            // lines that were added to the target are the last, and of no part
+            primary: kept
+                .iter()
+                .map_while(|&face| parts.primary.get(face as usize).copied())
+                .collect(),
+            ..parts.clone()
+        });
+        let mut beside = Lists::default();
+        for point in 0..self.depth.len() {
+            let own = self.beside.of(point).iter();
+            let places = own.filter_map(|face| kept.binary_search(face).ok());
+            beside.push(places.map(|place| place as u32));
+        }
+        Sight {
+            beside,
+            parts,
+            ..self.clone()
+        }
+    }
+
+    /// Secondary faces around a point.
+    pub(crate) fn faces_around(&self, point: usize) -> impl Iterator<Item = &Face> {
+        let around = self.around.of(point).iter();
+        around.map(|&face| &self.faces[face as usize])
+    }
+
     /// Whether the surface faces itself: points on its both sides may then say the same.
     pub fn is_of_itself(&self) -> bool {
         self.reach.is_finite()

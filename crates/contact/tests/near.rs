@@ -3,8 +3,8 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::law::Displacement;
 use carom_contact::{
-    Basis, Contact, Frames, Integration, Law, Mortar, Near, Pairing, Places, Point, Search, Shape,
-    Sight, Sliding, Sphere, Step, Target,
+    Basis, Contact, Frames, Integration, Law, Mortar, Near, OwnPart, Pairing, Places, Point,
+    Search, Shape, Sight, Sliding, Sphere, Step, Target,
 };
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Face, face_nodes};
@@ -131,6 +131,8 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
         projections: [0; 2],
     };
     let own: Vec<u32> = (0..contact.points.len() as u32).step_by(3).collect();
+    let carriers = own.iter().map(|&point| &contact.points[point as usize]);
+    let own_nodes: Vec<u32> = carriers.map(Point::node).collect();
     let parts = if way.short { 4 } else { 1 };
     for step in 0..parts * STEPS {
         let before = u.clone();
@@ -183,7 +185,10 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
             }),
             inside: &|point| gaps[point] < 0.0,
             initial: &initial,
-            own: way.some.then_some(&own[..]),
+            own: way.some.then_some(OwnPart {
+                points: &own,
+                nodes: &own_nodes,
+            }),
         };
         contact.pair_near(&places, &mut search, &given, &mut near);
         seen.projections[0] += search.projections();
@@ -352,9 +357,8 @@ fn some_nodes_on_a_sphere() {
     }
 }
 
-/// Two plates whose thickness is less than the reach, each with both its sides.
-#[test]
-fn a_surface_on_itself() {
+/// Two plates whose thickness is less than the reach, each with both its sides, and their contact with themselves and each other.
+fn two_plates() -> (Scene, Contact) {
     let mut scene = Scene::default();
     scene.add(6, [0.0, 0.0, -0.5], false);
     scene.add(6, [0.0; 3], true);
@@ -368,6 +372,12 @@ fn a_surface_on_itself() {
         sight: Some(sight),
         ..contact(Target::Surface(scene.faces.clone()), points)
     };
+    (scene, contact)
+}
+
+#[test]
+fn a_surface_on_itself() {
+    let (scene, contact) = two_plates();
     let seen = check(&scene, &contact, scene.sheets[2]);
     assert!(
         seen.projections[0] < seen.projections[1],
@@ -377,6 +387,120 @@ fn a_surface_on_itself() {
 }
 
 /// The bound of the motion is that against the drift.
+/// Each of two processes has the points of one half and the faces that these may touch; the faces are found anew before a node can have moved
+/// further than was assumed. `motion`: how far that is, in edges. Near points, and for each process the mean of faces that it has.
+fn compare_halves(scene: &Scene, contact: &Contact, first: usize, motion: f64) -> (usize, f64) {
+    let unknowns = Unknowns::translations(3, scene.x.len());
+    let mut u = vec![0.0; 3 * scene.x.len()];
+    let mut from = vec![f64::INFINITY; u.len()];
+    fn places<'a>(unknowns: &'a Unknowns, scene: &'a Scene, u: &'a [f64]) -> Places<'a> {
+        Places {
+            unknowns,
+            time: 0.0,
+            x: &scene.x,
+            u,
+            frames: Frames::default(),
+        }
+    }
+    let Target::Surface(faces) = &contact.target else {
+        unreachable!()
+    };
+    let nodes: Vec<u32> = (0..scene.x.len() as u32).collect();
+    let (mut random, mut whole, mut all) = (Random(3), Search::default(), Pairing::default());
+    let mut gaps = vec![1.0; contact.points.len()];
+    let (mut near_points, mut kept_faces, mut looks) = (0, 0, 0);
+    let mut halves: Vec<(Contact, Vec<u32>, Search)> = Vec::new();
+    let parts = 8;
+    for step in 0..parts * STEPS {
+        let before = u.clone();
+        let now = step as f64 / f64::from(parts as u32);
+        displacement(scene, first, now, &mut random, &mut u);
+        let ways = u.chunks(3).zip(from.chunks(3));
+        let ways = ways.map(|(u, v)| u.iter().zip(v).map(|(u, v)| (u - v).powi(2)).sum::<f64>());
+        if ways.fold(0.0, f64::max) >= motion * motion {
+            from.clone_from(&before);
+            looks += 1;
+            let inside = |point: usize| gaps[point] < 0.0;
+            let lists = contact.in_reach(
+                &places(&unknowns, scene, &before),
+                &mut whole,
+                [REACH, motion],
+                inside,
+            );
+            let half = |side: bool| {
+                let own = |k: &u32| {
+                    (scene.x[contact.points[*k as usize].node() as usize][0] < 2.5) == side
+                };
+                let looked = (0..contact.points.len() as u32).filter(own);
+                let looked: Vec<u32> = looked.filter(|&k| !lists[k as usize].is_empty()).collect();
+                let mut kept: Vec<u32> = looked
+                    .iter()
+                    .flat_map(|&k| lists[k as usize].clone())
+                    .collect();
+                kept.sort_unstable();
+                kept.dedup();
+                kept_faces += kept.len();
+                (contact.with_some_faces(&kept), looked, Search::default())
+            };
+            halves = [true, false].map(half).into();
+        }
+        let now = places(&unknowns, scene, &u);
+        all.open_all(std::slice::from_ref(contact), 3);
+        let (inside, initial) = (|point: usize| gaps[point] < 0.0, Pairing::default());
+        let near = |own| Near {
+            first: 0,
+            reach: REACH,
+            step: None,
+            inside: &inside,
+            initial: &initial,
+            own,
+        };
+        contact.pair_near(&now, &mut Search::default(), &near(None), &mut all);
+        let mut found = Pairing::default();
+        found.open_all(std::slice::from_ref(contact), 3);
+        for (half, points, search) in &mut halves {
+            let own = OwnPart {
+                points,
+                nodes: &nodes,
+            };
+            half.pair_near(&now, search, &near(Some(own)), &mut found);
+        }
+        near_points += all.near().len();
+        let mut both = found.near().to_vec();
+        both.sort_unstable();
+        assert_eq!(both, all.near(), "step {step}");
+        for &point in all.near() {
+            let point = point as usize;
+            assert_eq!(found.rows.gap(point), all.rows.gap(point), "step {step}");
+            assert_eq!(found.rows.row(point), all.rows.row(point), "step {step}");
+        }
+        for (point, gap) in gaps.iter_mut().enumerate() {
+            *gap = all.rows.gap(point);
+        }
+    }
+    let mean = kept_faces as f64 / f64::from(2 * looks);
+    (near_points, mean / faces.len() as f64)
+}
+
+#[test]
+fn faces_in_reach_are_all_that_a_part_of_the_points_needs() {
+    let scene = two_sheets();
+    let sheets = contact(Target::Surface(scene.of(0)), nodes_of(&scene, 1));
+    let (plates, itself) = two_plates();
+    let cases = [
+        (&scene, &sheets, scene.sheets[1]),
+        (&plates, &itself, plates.sheets[2]),
+    ];
+    for (scene, contact, first) in cases {
+        for motion in [0.2, 0.5 * REACH] {
+            let (near, faces) = compare_halves(scene, contact, first, motion);
+            // half of a sheet of six, and what is within an edge and the motion around it
+            let part = (3.0 + 1.0 + 2.0 * motion) / 6.0;
+            assert!(near > 3000 && faces < part, "{near} {faces}");
+        }
+    }
+}
+
 #[test]
 fn sheets_that_fly_together_are_looked_at_once() {
     let scene = two_sheets();

@@ -77,3 +77,64 @@ fn contacts_of_several_kinds_are_those_of_one_process_on_several_ranks() {
     assert!(records.iter().any(|record| record.energy_crushed > 0.0));
     assert!(records.iter().any(|record| record.friction_loss() > 0.0));
 }
+
+/// A plate on whose ends two blocks land and slide along: one contact at two places, and one of the plate with itself.
+const ENDS: &str = r#"
+carom = 1
+[mesh]
+generate.plate.box = { origin = [0.0, 0.0, 0.0], size = [0.4, 0.06, 0.02], elements = [24, 4, 2] }
+generate.left.box = { origin = [0.02, 0.011, 0.0204], size = [0.06, 0.04, 0.03], elements = [5, 3, 2] }
+generate.right.box = { origin = [0.31, 0.008, 0.0208], size = [0.06, 0.04, 0.03], elements = [5, 3, 2] }
+[material.soft]
+density = 1000.0
+neo-hooke = { young = "5 MPa", poisson = 0.3 }
+[material.hard]
+density = 2000.0
+neo-hooke = { young = "20 MPa", poisson = 0.3 }
+[body.plate]
+region = "plate"
+material = "soft"
+[body.left]
+region = "left"
+material = "hard"
+initial.velocity = [30.0, 1.0, -3.0]
+[body.right]
+region = "right"
+material = "hard"
+initial.velocity = [-25.0, 0.0, -4.0]
+[general-contact]
+by = "materials"
+law.velocity = {}
+friction.coulomb = 0.2
+[time]
+end = "2.5 ms"
+step = { critical = 0.2 }
+scheme.central-difference = {}
+"#;
+
+/// A contact at two places is computed by the ranks that are there, and where the places move, by others.
+#[test]
+fn one_contact_at_two_places_is_shared_out_and_moves_from_rank_to_rank() {
+    compare_on_ranks("ends", ENDS, &[2, 3, 4]);
+    let folder = tempfile::tempdir().unwrap();
+    run_alone(ENDS, folder.path());
+    let state = last(ENDS, folder.path());
+    let closings = state.records.contacts.iter().map(|record| record.closings);
+    assert!(closings.max().unwrap() > 0);
+    let shares = on_all(3, |ranks| {
+        let (_, _, built) = built(ENDS);
+        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
+        driver.share(ranks, &Watched::default()).unwrap();
+        let mut seen = vec![driver.rank_share().unwrap()];
+        for _ in 0..40 {
+            (0..10).for_each(|_| driver.step().unwrap());
+            seen.push(driver.rank_share().unwrap());
+        }
+        seen
+    });
+    // the blocks begin near the parts of two ranks, and come to that of the third
+    let begin = shares.iter().map(|share| share[0].looked_points > 0);
+    assert_eq!(begin.collect::<Vec<_>>(), [true, false, true]);
+    assert!(shares[1].iter().any(|share| share.looked_points > 0));
+    assert!(shares[1][40].contact_looks > 3);
+}

@@ -159,7 +159,7 @@ impl Contact {
     }
 
     /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal.
-    fn limit(&self, point: usize, reach: f64) -> f64 {
+    pub(super) fn limit(&self, point: usize, reach: f64) -> f64 {
         let beside = self.points[point].radius - self.offset(point);
         SQRT_2 * (reach + beside.max(0.0))
     }

@@ -21,10 +21,18 @@ pub struct Near<'a> {
     pub inside: &'a (dyn Fn(usize) -> bool + Sync),
     /// Points of a contact of small sliding where all nodes are at their reference places.
     pub initial: &'a Pairing,
-    /// The points that are looked at, by their numbers in the contact, ascending; the others face nothing, and the nodes of these alone
-    /// are looked at. Of a contact with an obstacle; none for all points. Given some, all within `reach` count: how far others move
-    /// is not known ([`Contact::reach`]).
-    pub own: Option<&'a [u32]>,
+    /// What is looked at, the others facing nothing; none for all points. Given some, all within `reach` count: how far others move is
+    /// not known ([`Contact::reach`]).
+    pub own: Option<OwnPart<'a>>,
+}
+
+/// The part of a contact that one of several processes looks at.
+#[derive(Clone, Copy, Debug)]
+pub struct OwnPart<'a> {
+    /// Points that are looked at, by their numbers in the contact, ascending. What they may face is known to the process.
+    pub points: &'a [u32],
+    /// Nodes whose motion bounds that of the contact, ascending: those of these points and of the faces, and others perhaps.
+    pub nodes: &'a [u32],
 }
 
 /// The step before a pairing of near points, at whose end that is.
@@ -271,7 +279,7 @@ impl Contact {
     }
 
     /// Bounds the motion since the last pairing.
-    fn travel(&self, rest: &mut Rest, (units, own): (usize, Option<&[u32]>), places: &Places) {
+    fn travel(&self, rest: &mut Rest, (units, own): (usize, Option<OwnPart>), places: &Places) {
         let obstacle = match &self.target {
             Target::Rigid(obstacle) => Some(obstacle),
             Target::Surface(_) => None,
@@ -282,12 +290,9 @@ impl Contact {
         } else {
             let (mut nodes, spread) = self.nodes();
             if let Some(own) = own {
-                let points = own.iter().map(|&point| &self.points[point as usize]);
-                let carriers = points.flat_map(Point::carriers);
-                nodes = carriers.map(|(node, _)| node).collect();
-                nodes.sort_unstable();
-                nodes.dedup();
+                nodes = own.nodes.to_vec();
             }
+            let own = own.map(|own| own.points);
             *rest = Rest::begin((units, own), (nodes, spread), places, displacement);
         }
         // no bound is known of what turns

@@ -308,27 +308,65 @@ impl FaceTree {
         };
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let most = LONGEST * farthest;
-        let slack = self.moved + tree.rounding(&there);
-        let measure = |item: u32| {
+        let target = (places, faces);
+        let measure = |item: u32| self.rest_from(target, (Some(view), x), item, [limit, most]);
+        // a distance is at most the limit and twice its measure
+        let found = tree.closest(&there, most, self.moved + limit + most, measure);
+        found.map_or(most, |(_, rest)| rest.max(0.0))
+    }
+
+    /// Faces that may come into view within the `limit` (m) of a place while nodes move by less than `motion` (m), ascending, into `found`, which
+    /// is cleared first.
+    pub fn in_reach(
+        &self,
+        target: (&Places, &[Face]),
+        (view, x): (Option<View>, &[f64; 3]),
+        [limit, motion]: [f64; 2],
+        found: &mut Vec<u32>,
+    ) {
+        found.clear();
+        let Some(tree) = &self.tree else {
+            return;
+        };
+        let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
+        let around = limit + 2.0 * motion + self.moved + tree.rounding(&there);
+        tree.near(&there, around, found);
+        found.retain(|&item| self.rest_from(target, (view, x), item, [limit, motion]) < motion);
+    }
+
+    /// The most that nodes may move, m, before a face may come into view within the `limit` (m) of a place; that or less where it
+    /// is less than `most` (m), and otherwise no less than `most`.
+    fn rest_from(
+        &self,
+        (places, faces): (&Places, &[Face]),
+        (view, x): (Option<View>, &[f64; 3]),
+        item: u32,
+        [limit, most]: [f64; 2],
+    ) -> f64 {
+        let face = &faces[item as usize];
+        let mut rest = match &self.tree {
             // bounds that need no foot come first: they tell it of most faces
-            let face = &faces[item as usize];
-            let apart = tree.bounds(item).distance_squared(&there).sqrt() - slack;
-            let mut rest = 0.5 * (apart - limit);
+            Some(tree) => {
+                let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
+                let slack = self.moved + tree.rounding(&there);
+                let apart = tree.bounds(item).distance_squared(&there).sqrt() - slack;
+                0.5 * (apart - limit)
+            }
+            None => 0.0,
+        };
+        if let Some(view) = view {
             if rest < most {
                 rest = rest.max(view.hidden((item, face), places, &self.normals));
             }
             if rest < most {
                 rest = rest.max(view.behind(face, x, places));
             }
-            if rest < most {
-                let (foot, _) = foot_on(places, faces, item, x);
-                rest = rest.max(0.5 * (foot.distance - limit));
-            }
-            rest
-        };
-        // a distance is at most the limit and twice its measure
-        let found = tree.closest(&there, most, self.moved + limit + most, measure);
-        found.map_or(most, |(_, rest)| rest.max(0.0))
+        }
+        if rest < most {
+            let (foot, _) = foot_on(places, faces, item, x);
+            rest = rest.max(0.5 * (foot.distance - limit));
+        }
+        rest
     }
 
     /// Whether a face is out of a view wherever the foot on it is.

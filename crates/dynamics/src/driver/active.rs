@@ -56,7 +56,10 @@ impl Active {
             let points = system.points_of(contact);
             match of {
                 Own::All => own.extend(points.map(|point| point as u32)),
-                Own::Some(some) => own.extend(some.iter().map(|point| points.start as u32 + point)),
+                Own::Some(part) => {
+                    let first = points.start as u32;
+                    own.extend(part.points.iter().map(|point| first + point));
+                }
             }
         }
         (self.own, self.own_of) = (Some(own), own_of);

@@ -7,7 +7,7 @@ use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
 use super::Driver;
-use super::deletion::as_left;
+use super::deletion::as_narrowed;
 use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
@@ -161,7 +161,7 @@ impl Driver {
         let chosen = &self.next.interface.watched;
         self.candidates.retain(|&point| {
             let number = system.contact_of(point as usize);
-            let contact = as_left(&self.bared, &system, number);
+            let contact = as_narrowed(&self.narrowed, &system, number);
             let first = system.first_point[number];
             let takes_part = |other: usize| chosen[first + other];
             !contact.leaves_it((pairing, first), point as usize - first, takes_part)

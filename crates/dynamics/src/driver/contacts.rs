@@ -5,7 +5,7 @@ use std::sync::Arc;
 use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Balance, Contact, Sliding};
 
-use super::deletion::as_left;
+use super::deletion::as_narrowed;
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
@@ -94,7 +94,7 @@ impl Driver {
         let mut places = system.places(time, place, frames);
         places.frames.middle = middle;
         places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
-        let contact = as_left(&self.bared, &system, number);
+        let contact = as_narrowed(&self.narrowed, &system, number);
         if self.far.has(number) {
             let (gaps, first) = (&self.state.interface.gap, system.first_point[number]);
             let inside = |point: usize| gaps[first + point] < 0.0;

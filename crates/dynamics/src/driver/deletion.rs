@@ -44,16 +44,16 @@ impl Driver {
     /// Brings the primary sides of contacts to the elements that are left in the state, a function of the state alone.
     pub(super) fn renew_targets(&mut self) {
         let deleted = self.state.ledger.deleted;
-        if self.bared_for == deleted {
+        if self.narrowed_for == deleted {
             return;
         }
-        self.bared_for = deleted;
+        self.narrowed_for = deleted;
         let system = &*self.system;
-        self.bared.resize(system.contacts.len(), None);
+        self.narrowed.resize(system.contacts.len(), None);
         for (number, contact) in system.contacts.iter().enumerate() {
             let faces = system.faces_left(number, &self.state.motion.history);
-            self.bared[number] = faces.map(|faces| contact.with_faces(faces, &system.x));
-            if self.bared[number].is_some() {
+            self.narrowed[number] = faces.map(|faces| contact.with_faces(faces, &system.x));
+            if self.narrowed[number].is_some() {
                 self.search[number] = Search::default();
             }
         }
@@ -61,12 +61,12 @@ impl Driver {
 }
 
 /// A contact as the deletion of elements has left it.
-pub(super) fn as_left<'a>(
-    bared: &'a [Option<Contact>],
+pub(super) fn as_narrowed<'a>(
+    narrowed: &'a [Option<Contact>],
     system: &'a System,
     number: usize,
 ) -> &'a Contact {
-    let left = bared.get(number).and_then(Option::as_ref);
+    let left = narrowed.get(number).and_then(Option::as_ref);
     left.unwrap_or(&system.contacts[number])
 }
 

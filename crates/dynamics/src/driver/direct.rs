@@ -45,10 +45,18 @@ impl Driver {
 
     /// Tells that an attempt of another kind begins.
     pub(super) fn leave_direct(&mut self) {
-        if let Some(direct) = &mut self.direct {
-            (direct.clean, direct.finite) = (false, false);
-            (direct.pending, direct.ready) = (None, None);
+        if let Some(mut direct) = self.direct.take() {
+            self.forget_step(&mut direct);
+            self.direct = Some(direct);
+        } else {
+            self.active.leave();
         }
+    }
+
+    /// Forgets what the step before left for the next.
+    pub(super) fn forget_step(&mut self, direct: &mut Direct) {
+        (direct.clean, direct.finite) = (false, false);
+        (direct.pending, direct.ready) = (None, None);
         self.active.leave();
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Driver;
-use super::deletion::as_left;
+use super::deletion::as_narrowed;
 use crate::error::Error;
 
 /// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
@@ -25,7 +25,7 @@ impl Driver {
             let time = self.state.time + self.paired_after(k);
             let mut places = system.places(time, &u, &self.state.motion.frames);
             places.frames.middle = self.between();
-            let all = as_left(&self.bared, &system, k).held(&places, &self.search[k]);
+            let all = as_narrowed(&self.narrowed, &system, k).held(&places, &self.search[k]);
             self.vectors.place = u;
             for held in all {
                 let name = self.name(system.first_point[k] + held.point);

@@ -166,8 +166,8 @@ pub struct Driver {
     initial: Vec<Pairing>,
     search: Vec<Search>,
     /// Contacts whose primary sides have lost cells, and the number of deleted elements that they are for; empty as long as none has.
-    bared: Vec<Option<Contact>>,
-    bared_for: u64,
+    narrowed: Vec<Option<Contact>>,
+    narrowed_for: u64,
     watch: Watch,
     active: Active,
     far: Far,

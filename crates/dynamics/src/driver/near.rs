@@ -6,10 +6,10 @@
 
 use std::sync::Arc;
 
-use carom_contact::{Near, Pairing, Places, Sliding, Step};
+use carom_contact::{Near, OwnPart, Pairing, Places, Sliding, Step};
 
 use super::Driver;
-use super::deletion::as_left;
+use super::deletion::as_narrowed;
 use super::tangents::first_thought;
 use crate::shared::Own;
 use crate::step_map::Row;
@@ -60,13 +60,16 @@ impl Driver {
     fn pair_near_of(&mut self, number: usize, placed: &mut Option<Row>, pairing: &mut Pairing) {
         let system = Arc::clone(&self.system);
         let (contact, first) = (
-            as_left(&self.bared, &system, number),
+            as_narrowed(&self.narrowed, &system, number),
             system.first_point[number],
         );
         let own = match self.active.own_of(number) {
             Own::All => None,
-            Own::Some(own) if own.is_empty() => return,
-            Own::Some(own) => Some(&own[..]),
+            Own::Some(part) if part.nodes.is_empty() => return,
+            Own::Some(part) => Some(OwnPart {
+                points: &part.looked,
+                nodes: &part.nodes,
+            }),
         };
         let time = self.state.time + self.paired_after(number);
         let (row, map) = (

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_bodies::{Distortion, Extreme, Share};
+use carom_contact::Search;
 use carom_ranks::Ranks;
 
 use super::Driver;
@@ -17,8 +18,7 @@ use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::records::ContactRecord;
-use crate::shared::{Own, Shared, SharedNodes, Told, partition_of};
-use crate::small::Largest;
+use crate::shared::{InReach, Own, Part, Shared, SharedNodes, Told, partition_of};
 use crate::update::Sums;
 
 /// What one of several ranks has of a run, and sends to others.
@@ -30,6 +30,10 @@ pub struct RankShare {
     pub nodes: usize,
     /// Contact points that it computes.
     pub points: usize,
+    /// The most of them so far that might touch something at a time.
+    pub looked_points: usize,
+    /// How often contacts of surfaces have been shared out.
+    pub contact_looks: usize,
     /// Bytes that it sends in each step, by the count of these nodes.
     pub halo_bytes: u64,
     /// Bytes that it has sent so far: with what the first rank is given where impacts begin or end, and where somebody looks.
@@ -51,12 +55,16 @@ impl Driver {
         }
         let system = Arc::clone(&self.system);
         let shares = super::unfit::why_not_on_ranks(&system).is_none();
-        let Some(direct) = self.direct.as_mut().filter(|_| shares) else {
+        if !shares || self.direct.is_none() {
             self.effective.share(ranks);
             return Ok(());
-        };
+        }
         let elements = partition_of(&system, ranks)?;
-        let mut shared = Shared::new(&system, ranks, (watched, elements));
+        let map = self.maps.first();
+        let at_ends = |contact: usize| self.paired_at(contact).row(map) == map.displacement;
+        let in_reach = InReach::new(&system, &self.active.reaches, at_ends);
+        let given = (in_reach, &self.state);
+        let mut shared = Shared::new(&system, ranks, (watched, elements), given);
         shared.take_looks(&system, &self.state.shapes.looks);
         if !shared.is_first() {
             self.state.shapes.looks = Vec::new();
@@ -65,12 +73,10 @@ impl Driver {
             let counts = records.iter_mut().flat_map(ContactRecord::closings_mut);
             counts.for_each(|count| *count = 0);
         }
-        let own = shared.own_points(&system);
-        let has = |contact: usize| own[contact] == Own::All;
-        self.far = Far::of(&system, has);
-        self.active.keep_own(&system, own);
-        direct.blocks = shared.blocks(&system);
-        direct.sums = vec![Sums::default(); direct.blocks.len()];
+        if let Some(mut direct) = self.direct.take() {
+            self.take_homes(&mut shared, &mut direct);
+            self.direct = Some(direct);
+        }
         self.shared = Some(Box::new(shared));
         self.several = true;
         Ok(())
@@ -100,10 +106,34 @@ impl Driver {
             elements: elements.map(|share| share.places().len()).sum(),
             nodes: shared.halo.present.len(),
             points: self.active.own_points(),
+            looked_points: shared.looked,
+            contact_looks: shared.in_reach.looks,
             halo_bytes: shared.halo.bytes(self.system.dim),
             sent_bytes: shared.ranks.sent_bytes(),
             shared_nodes: shared.shared_nodes,
         })
+    }
+
+    /// Takes the contact points that this rank has now.
+    fn take_homes(&mut self, shared: &mut Shared, direct: &mut Direct) {
+        let system = Arc::clone(&self.system);
+        let own = shared.own_points(&system);
+        self.narrowed.resize(system.contacts.len(), None);
+        for (number, own) in own.iter().enumerate() {
+            if let Own::Some(Part {
+                faces: Some(faces), ..
+            }) = own
+            {
+                let contact = &system.contacts[number];
+                self.narrowed[number] = Some(contact.with_some_faces(faces));
+                self.search[number] = Search::default();
+            }
+        }
+        self.far = Far::of(&system, |contact| own[contact] == Own::All);
+        self.active.keep_own(&system, own);
+        direct.blocks = shared.blocks(&system);
+        direct.sums = vec![Sums::default(); direct.blocks.len()];
+        self.forget_step(direct);
     }
 
     /// Takes the attempt on all ranks.
@@ -114,7 +144,12 @@ impl Driver {
         clean: bool,
     ) -> Result<(), Error> {
         let (begin, before) = (Instant::now(), self.phases);
-        let dim = self.system.dim;
+        let (dim, mut clean) = (self.system.dim, clean);
+        if shared.in_reach.is_due() {
+            shared.find_homes_anew(&self.system, &mut self.state);
+            self.take_homes(shared, direct);
+            clean = false;
+        }
         self.begin_leap(direct, clean);
         self.place_end(direct);
         let forced = self.forces_on_ranks(shared, direct);
@@ -145,6 +180,10 @@ impl Driver {
             },
         };
         let told = shared.sum_up(parts, energies, &mut contacts, &told);
+        if shared.in_reach.travel(&contacts) {
+            self.of_contacts = contacts;
+            return self.step_on_ranks(shared, direct, false);
+        }
         if told.failed {
             return Err(of_ranks(&shared.ranks, failed));
         }
@@ -152,7 +191,8 @@ impl Driver {
         let sums = direct.total(self.system.axisymmetric);
         self.know_end(&sums, direct);
         self.know_gaps(&mut contacts);
-        shared.sum_contacts(&mut contacts);
+        let records = &self.state.records.contacts;
+        shared.sum_contacts(&mut contacts, (records, self.state.time + self.dt));
         if self.impacts_change(&contacts) {
             let velocities = [&mut self.state.motion.v[..], &mut self.next.motion.v];
             shared.gather_velocities(dim, velocities);
@@ -172,10 +212,7 @@ impl Driver {
             let Own::Some(own) = self.active.own_of(k) else {
                 continue;
             };
-            let of = &mut self.of_contacts[k];
-            // the record of one rank counts
-            of.passing = Largest::default();
-            of.motion = match (in_steps, own.is_empty()) {
+            self.of_contacts[k].motion = match (in_steps, own.nodes.is_empty()) {
                 (false, _) => f64::INFINITY,
                 (true, true) => 0.0,
                 (true, false) => self.search[k].motion(),

@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use carom_contact::Sliding;
 
-use super::deletion::as_left;
+use super::deletion::as_narrowed;
 use super::mixing::LARGEST;
 use super::refined::Refined;
 use super::residual::Standing;
@@ -182,7 +182,7 @@ impl Driver {
             let time = self.state.time + self.paired_after(number);
             let mut places = system.places(time, &self.vectors.place, &self.state.motion.frames);
             places.frames.middle = self.between();
-            let contact = as_left(&self.bared, &system, number);
+            let contact = as_narrowed(&self.narrowed, &system, number);
             let search = &mut self.search[number];
             contact.pair_again(&places, search, (&own, first), &mut self.pairing);
         }

@@ -7,13 +7,13 @@ use carom_ranks::{Message, Ranks};
 use super::halo::{Halo, With, by_rank};
 use crate::march::{Scope, Watched};
 use crate::of_contact::OfContact;
-use crate::records::Records;
+use crate::records::{ContactRecord, Records};
 use crate::state::{InterfaceState, State};
 use crate::system::System;
 
 /// Numbers of a point that the first rank is given where somebody looks at points, and where the state is to be whole.
 const SEEN: usize = 5;
-const WHOLE: usize = 12;
+pub(super) const WHOLE: usize = 12;
 
 /// The points of contacts that the first rank does not have: by rank on the first one, and on another its own.
 #[derive(Debug, Default)]
@@ -90,8 +90,14 @@ impl SharedPoints {
         }
     }
 
-    /// Makes of what the points of this rank did what those of all ranks did, of the contacts of which any rank has looked at some.
-    pub(super) fn sum(&mut self, ranks: &Ranks, contacts: &mut [OfContact]) {
+    /// Makes of what the points of this rank did what those of all ranks did, of the contacts of which any rank has looked at some. `before`: their
+    /// records at the start of the step, `end`: its end, s.
+    pub(super) fn sum(
+        &mut self,
+        ranks: &Ranks,
+        contacts: &mut [OfContact],
+        (before, end): (&[ContactRecord], f64),
+    ) {
         let SharedPoints {
             gaps,
             sums,
@@ -109,6 +115,7 @@ impl SharedPoints {
             } else {
                 f64::NEG_INFINITY
             });
+            largest.push(of.passing.value);
         }
         if sums.is_empty() {
             return;
@@ -122,9 +129,15 @@ impl SharedPoints {
             let report = &mut of.report;
             let rate = largest.next().filter(|_| report.gap.is_finite());
             report.rate = rate.copied().unwrap_or_default();
+            let deepest = largest.next().copied().unwrap_or_default();
+            if of.passing.value < deepest {
+                of.passing.value = deepest;
+                of.passing.place = u32::MAX;
+            }
             let friction = [0, 1, 2].map(|i| (report.resultant[i] - report.normal[i]).powi(2));
             report.friction = friction.iter().sum::<f64>().sqrt();
         }
+        find_places(ranks, contacts, (before, end));
     }
 
     /// Brings forces, gaps and statuses of the points of a scope to the first rank; with all of them all that a state has of them.
@@ -144,6 +157,28 @@ impl SharedPoints {
     /// Brings forces, gaps and statuses of all points to the first rank.
     pub(super) fn gather_seen(&mut self, ranks: &Ranks, state: &mut State) {
         collect((ranks, false), (&self.all, &mut self.room), state);
+    }
+}
+
+/// Finds where points are deeper behind the other side than any before the step, each rank knowing how deep: the first of such places.
+fn find_places(ranks: &Ranks, contacts: &mut [OfContact], (before, end): (&[ContactRecord], f64)) {
+    let pairs = contacts.iter_mut().zip(before);
+    let is_deeper = |(of, record): &(&mut OfContact, &ContactRecord)| {
+        of.near && of.passing.value > record.passing.value
+    };
+    let mut deeper: Vec<_> = pairs.filter(is_deeper).map(|(of, _)| of).collect();
+    if deeper.is_empty() {
+        return;
+    }
+    let own = deeper.iter().map(|of| match of.passing.place {
+        u32::MAX => f64::NEG_INFINITY,
+        place => -f64::from(place),
+    });
+    let mut places: Vec<f64> = own.collect();
+    ranks.reduce(&mut [], &mut places);
+    for (of, place) in deeper.iter_mut().zip(places) {
+        of.passing.place = -place as u32;
+        of.passing.time = end;
     }
 }
 
@@ -206,7 +241,7 @@ fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
         work,
         crushed,
         pushed,
-        passing,
+        passing: _,
         jump: _,
     } = of;
     let vectors = [
@@ -226,7 +261,6 @@ fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
         visit(&mut number);
         *count = number as usize;
     }
-    let mut place = f64::from(passing.place);
     let sums = [
         &mut report.force,
         &mut report.friction_loss,
@@ -234,16 +268,17 @@ fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
         work,
         crushed,
         &mut pushed.turn,
-        &mut passing.value,
-        &mut passing.time,
-        &mut place,
     ];
     sums.into_iter().for_each(visit);
-    passing.place = place as u32;
 }
 
 /// Visits what a state has of a point: what is seen of it, or the `whole`.
-fn of_point(state: &mut State, point: usize, whole: bool, visit: &mut impl FnMut(&mut f64)) {
+pub(super) fn of_point(
+    state: &mut State,
+    point: usize,
+    whole: bool,
+    visit: &mut dyn FnMut(&mut f64),
+) {
     let InterfaceState {
         force,
         friction,

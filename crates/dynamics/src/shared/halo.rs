@@ -7,6 +7,7 @@
 use carom_ranks::Message;
 
 use super::homes::Homes;
+use super::in_reach::Faces;
 use crate::system::System;
 
 /// Nodes, ascending, of a message with another rank.
@@ -40,8 +41,8 @@ pub(crate) struct Halo {
 pub(crate) type Parts = [Vec<u32>];
 
 impl Halo {
-    /// Of a rank.
-    pub(crate) fn new(system: &System, parts: &Parts, rank: usize) -> Halo {
+    /// Of a rank. `in_reach`: the faces that points may touch.
+    pub(crate) fn new(system: &System, (parts, in_reach): (&Parts, &Faces), rank: usize) -> Halo {
         let nodes = system.x.len();
         // the rank of the first element at a node, and the others that have some
         let mut first = vec![u32::MAX; nodes];
@@ -72,7 +73,7 @@ impl Halo {
             *owner = 0;
         }
         let mut halo = Halo {
-            homes: Homes::new(system, &owner),
+            homes: Homes::new(system, &owner, in_reach),
             owner,
             ..Halo::default()
         };
@@ -170,10 +171,13 @@ fn add(lists: &mut Vec<With>, rank: u32, node: u32) {
     }
 }
 
-/// Nodes of all contacts, ascending.
-pub(crate) fn contact_nodes(system: &System) -> Vec<u32> {
-    let contacts = system.contacts.iter();
-    let mut nodes: Vec<u32> = contacts.flat_map(|contact| contact.nodes().0).collect();
+/// Nodes of some contacts, by their numbers, ascending.
+pub(crate) fn contact_nodes(system: &System, which: impl Fn(usize) -> bool) -> Vec<u32> {
+    let contacts = system.contacts.iter().enumerate();
+    let contacts = contacts.filter(|(number, _)| which(*number));
+    let mut nodes: Vec<u32> = contacts
+        .flat_map(|(_, contact)| contact.nodes().0)
+        .collect();
     nodes.sort_unstable();
     nodes.dedup();
     nodes

@@ -1,14 +1,18 @@
 //! Which rank has each contact point.
 //!
 //! Forces of contact points whose rows share a node depend on each other, and so do points that look for the same faces. Points and nodes
-//! that such rows may connect are a *family*: each node with its points under an obstacle alone is one, all points and
-//! nodes of a contact of two surfaces are one, with those of other contacts that have some of its nodes. A family is solved by one
-//! rank, its *home*: of those that own its nodes the one that owns most of them. So points on obstacles stay where their nodes are, and contacts are shared out by their places.
+//! that such rows may connect are a *family*: each node with its points under an obstacle is one; a point that may touch faces of another
+//! surface soon ([`in_reach`](super::in_reach)) is of one family with the nodes of these faces and of those around it; where that is not known
+//! ahead, as of mortar contacts, all points and nodes of a contact are of one. A family is solved by one
+//! rank, its *home*: of those that own its nodes the one that owns most of them. A point that touches nothing soon is with the owner of its node. So points on obstacles stay where
+//! their nodes are, and contacts are shared out by their places.
 
 use std::ops::Range;
 
 use carom_contact::{Contact, Target};
+use carom_mesh::Face;
 
+use super::in_reach::Faces;
 use crate::system::System;
 
 /// Home of a node without contacts.
@@ -27,27 +31,46 @@ pub(crate) struct Homes {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Own {
     All,
-    /// These, by their numbers in the contact, ascending; others have the rest. None of them perhaps.
-    Some(Vec<u32>),
+    /// Others have the rest.
+    Some(Part),
+}
+
+/// What a rank has of a contact. None of its points perhaps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Part {
+    /// Points, by their numbers in the contact, ascending.
+    pub(crate) points: Vec<u32>,
+    /// Those of them that may touch something.
+    pub(crate) looked: Vec<u32>,
+    /// Nodes of the contact that this rank knows, ascending.
+    pub(crate) nodes: Vec<u32>,
+    /// Faces that some of the points may touch, by their numbers in the contact, ascending; none of a contact with an obstacle.
+    pub(crate) faces: Option<Vec<u32>>,
 }
 
 impl Homes {
     /// `owner`: rank that owns each node of the system.
-    pub(crate) fn new(system: &System, owner: &[u32]) -> Homes {
+    pub(crate) fn new(system: &System, owner: &[u32], in_reach: &Faces) -> Homes {
         let mut families = Families::new(owner.len());
-        for contact in &system.contacts {
-            if is_split(contact) {
-                for point in &contact.points {
-                    families.join(point.carriers().map(|(node, _)| node));
+        for (contact, in_reach) in system.contacts.iter().zip(in_reach) {
+            match in_reach {
+                Some(faces) => families.join_near(contact, faces),
+                None if is_split(contact) => {
+                    for point in &contact.points {
+                        families.join(point.carriers().map(|(node, _)| node));
+                    }
                 }
-            } else {
-                families.join(contact.nodes().0.into_iter());
+                None => families.join(contact.nodes().0.into_iter()),
             }
         }
         let of_node = families.homes(owner);
         let points = system.contacts.iter().flat_map(|contact| &contact.points);
+        let home = |node: usize| match of_node[node] {
+            NONE => owner[node],
+            home => home,
+        };
         Homes {
-            of_point: points.map(|point| of_node[point.node() as usize]).collect(),
+            of_point: points.map(|point| home(point.node() as usize)).collect(),
             of_node,
         }
     }
@@ -57,22 +80,60 @@ impl Homes {
         Some(self.of_node[node]).filter(|home| *home != NONE)
     }
 
-    /// Of each contact the points of a rank.
-    pub(crate) fn own(&self, system: &System, rank: usize) -> Vec<Own> {
+    /// Of each contact what a rank has. `knows`: whether it computes the motion of a node.
+    pub(crate) fn own(
+        &self,
+        system: &System,
+        (rank, in_reach): (usize, &Faces),
+        knows: impl Fn(u32) -> bool,
+    ) -> Vec<Own> {
         let own = |range: Range<usize>| {
             let homes = self.of_point[range].iter().zip(0..);
             let own = homes.filter(|(home, _)| **home as usize == rank);
             own.map(|(_, point)| point).collect::<Vec<u32>>()
         };
-        let of_contact = |contact: usize| {
-            let points = system.points_of(contact);
-            match own(points.clone()) {
-                all if all.len() == points.len() => Own::All,
-                some => Own::Some(some),
+        let of_contact = |(number, in_reach): (usize, &Option<Vec<Vec<u32>>>)| {
+            let contact = &system.contacts[number];
+            let range = system.points_of(number);
+            let points = own(range.clone());
+            let part = |looked: Vec<u32>, faces: Option<Vec<u32>>, nodes: Vec<u32>| {
+                Own::Some(Part {
+                    looked,
+                    faces: faces.map(in_order),
+                    nodes: in_order(nodes),
+                    points: points.clone(),
+                })
+            };
+            match in_reach {
+                Some(in_reach) => {
+                    let faces_of = |point: u32| &in_reach[point as usize];
+                    let looked = points.iter().copied();
+                    let looked: Vec<u32> = looked.filter(|&p| !faces_of(p).is_empty()).collect();
+                    let faces = looked
+                        .iter()
+                        .flat_map(|&point| faces_of(point).iter().copied());
+                    let faces = faces.collect();
+                    let mut nodes = contact.nodes().0;
+                    nodes.retain(|&node| knows(node));
+                    part(looked, Some(faces), nodes)
+                }
+                None if points.len() == range.len() => Own::All,
+                None => {
+                    let own = points.iter().map(|&point| &contact.points[point as usize]);
+                    let carriers = own.flat_map(|point| point.carriers());
+                    let nodes = carriers.map(|(node, _)| node).collect();
+                    part(points.clone(), None, nodes)
+                }
             }
         };
-        (0..system.contacts.len()).map(of_contact).collect()
+        in_reach.iter().enumerate().map(of_contact).collect()
     }
+}
+
+fn in_order(mut numbers: Vec<u32>) -> Vec<u32> {
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
 }
 
 /// Whether the rows of each point are those of its own nodes, whatever the others do.
@@ -101,6 +162,23 @@ impl Families {
             at = above;
         }
         at
+    }
+
+    /// Makes the nodes of each point and of the faces that it may touch, and of those around it, of one family. `in_reach`: these faces, by
+    /// their numbers.
+    fn join_near(&mut self, contact: &Contact, in_reach: &[Vec<u32>]) {
+        let Target::Surface(faces) = &contact.target else {
+            return;
+        };
+        let points = contact.points.iter().zip(in_reach).enumerate();
+        for (number, (point, near)) in points.filter(|(_, (_, near))| !near.is_empty()) {
+            let near = near.iter().map(|&face| &faces[face as usize]);
+            let nodes = near
+                .chain(contact.faces_around(number))
+                .flat_map(Face::corners);
+            let own = point.carriers().map(|(node, _)| node);
+            self.join(own.chain(nodes.copied()));
+        }
     }
 
     /// Makes some nodes of one family.

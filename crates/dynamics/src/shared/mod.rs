@@ -8,8 +8,10 @@
 mod contacts;
 pub(crate) mod halo;
 mod homes;
+mod in_reach;
 mod looks;
 mod parts;
+mod spread;
 mod whole;
 
 use carom_bodies::{Error as BodyError, Looks, Placement, Seen, Share, Stored};
@@ -19,12 +21,15 @@ use crate::blocks::{Block, blocks_of};
 use crate::error::Error;
 use crate::march::{Scope, Watched};
 use crate::of_contact::OfContact;
+use crate::records::ContactRecord;
 use crate::resultant::Resultant;
 use crate::state::State;
 use crate::system::{Motion, System};
 use crate::update::Sums;
-use halo::{Halo, messages, pack, unpack};
-pub(crate) use homes::Own;
+use halo::{Halo, contact_nodes, messages, pack, unpack};
+pub(crate) use homes::{Own, Part};
+use in_reach::Faces;
+pub(crate) use in_reach::InReach;
 use parts::Partition;
 pub use parts::SharedNodes;
 pub(crate) use parts::partition_of;
@@ -34,7 +39,15 @@ pub(crate) struct Shared {
     pub(crate) ranks: Ranks,
     pub(crate) shared_nodes: SharedNodes,
     pub(crate) halo: Halo,
-    /// Of each body the elements at nodes that others have too, and the others.
+    /// What is known of the faces that points may touch, and these faces.
+    pub(crate) in_reach: InReach,
+    faces: Faces,
+    /// The most points of this rank so far that might touch something.
+    pub(crate) looked: usize,
+    /// The rank of each element of each body.
+    elements: Vec<Vec<u32>>,
+    watched: Watched,
+    /// Of each body the elements at nodes that others may have too, and the others.
     bodies: Vec<[Share; 2]>,
     sends: Vec<Message>,
     receives: Vec<Message>,
@@ -49,6 +62,7 @@ pub(crate) struct Shared {
     whole: whole::Whole,
     looks: looks::SharedLooks,
     points: contacts::SharedPoints,
+    spread: spread::Spread,
 }
 
 /// What a step tells all ranks, beside its sums.
@@ -60,17 +74,41 @@ pub(crate) struct Told {
 }
 
 impl Shared {
-    /// Of this rank. `partition`: of the elements of each body, solids all of them.
+    /// Of this rank, in a state that all ranks have as a whole. `partition`: of the elements of each body, solids all of them.
     pub(crate) fn new(
         system: &System,
         ranks: &Ranks,
         (watched, partition): (&Watched, Partition),
+        (in_reach, state): (InReach, &State),
     ) -> Shared {
         let rank = ranks.rank();
         let elements = partition.of_bodies;
-        let halo = Halo::new(system, &elements, rank);
+        let mut shared = Shared {
+            ranks: ranks.clone(),
+            shared_nodes: partition.shared,
+            halo: Halo::default(),
+            in_reach,
+            faces: Vec::new(),
+            looked: 0,
+            watched: watched.clone(),
+            bodies: Vec::new(),
+            sends: Vec::new(),
+            receives: Vec::new(),
+            own: Vec::new(),
+            touches: Vec::new(),
+            touched: Vec::new(),
+            sums: Vec::new(),
+            largest: Vec::new(),
+            whole: whole::Whole::new(system, &elements, rank),
+            looks: looks::SharedLooks::new(&elements, ranks.count()),
+            points: contacts::SharedPoints::default(),
+            spread: spread::Spread::default(),
+            elements,
+        };
+        shared.find_homes(system, state);
         let mut border = vec![false; system.x.len()];
-        for &node in &halo.shared {
+        let shared_later = contact_nodes(system, |contact| shared.in_reach.has(contact));
+        for &node in shared.halo.shared.iter().chain(&shared_later) {
             border[node as usize] = true;
         }
         let shares = |(body, parts): (&carom_bodies::Body, &Vec<u32>)| {
@@ -85,24 +123,31 @@ impl Shared {
             body.as_solid()
                 .map(|solid| lists.map(|list| solid.share(list)))
         };
-        let bodies = system.bodies.iter().zip(&elements).filter_map(shares);
-        let dim = system.dim;
-        Shared {
-            bodies: bodies.collect(),
-            sends: messages(&halo.sends, dim),
-            receives: messages(&halo.receives, dim),
-            own: vec![0.0; dim * halo.shared.len()],
-            touches: messages(&halo.touches, dim),
-            touched: messages(&halo.touched, dim),
-            sums: Vec::new(),
-            largest: Vec::new(),
-            whole: whole::Whole::new(system, (&halo, rank), &watched.nodes, &elements),
-            looks: looks::SharedLooks::new(&elements, ranks.count()),
-            points: contacts::SharedPoints::new(system, (&halo, rank), watched),
-            halo,
-            ranks: ranks.clone(),
-            shared_nodes: partition.shared,
-        }
+        let bodies = system.bodies.iter().zip(&shared.elements);
+        shared.bodies = bodies.filter_map(shares).collect();
+        shared
+    }
+
+    /// Finds which rank has which contact points, in a state whose contacts all ranks know.
+    fn find_homes(&mut self, system: &System, state: &State) {
+        self.faces = self.in_reach.find(system, state);
+        let (rank, dim) = (self.ranks.rank(), system.dim);
+        let halo = Halo::new(system, (&self.elements, &self.faces), rank);
+        self.sends = messages(&halo.sends, dim);
+        self.receives = messages(&halo.receives, dim);
+        self.own = vec![0.0; dim * halo.shared.len()];
+        self.touches = messages(&halo.touches, dim);
+        self.touched = messages(&halo.touched, dim);
+        self.points = contacts::SharedPoints::new(system, (&halo, rank), &self.watched);
+        self.spread = spread::Spread::new(system, &self.in_reach, &halo, self.ranks.count());
+        self.whole.take(system, (&halo, rank), &self.watched.nodes);
+        self.halo = halo;
+    }
+
+    /// Finds anew which rank has which contact points. All ranks ask together.
+    pub(crate) fn find_homes_anew(&mut self, system: &System, state: &mut State) {
+        self.spread.give(&self.ranks, system.dim, state);
+        self.find_homes(system, state);
     }
 
     /// Whether this is the first rank.
@@ -225,9 +270,17 @@ impl Shared {
         }
     }
 
-    /// Of each contact the points of this rank.
-    pub(crate) fn own_points(&self, system: &System) -> Vec<Own> {
-        self.halo.homes.own(system, self.ranks.rank())
+    /// What this rank has of each contact.
+    pub(crate) fn own_points(&mut self, system: &System) -> Vec<Own> {
+        let (halo, rank) = (&self.halo, self.ranks.rank());
+        let knows = |node: u32| halo.present.binary_search(&node).is_ok();
+        let own = halo.homes.own(system, (rank, &self.faces), knows);
+        let looked = own.iter().zip(0..).map(|(own, contact)| match own {
+            Own::All => system.points_of(contact).len(),
+            Own::Some(part) => part.looked.len(),
+        });
+        self.looked = self.looked.max(looked.sum());
+        own
     }
 
     /// Brings to the first rank what it has to have of a state.
@@ -337,8 +390,13 @@ impl Shared {
     }
 
     /// Makes of what the points of this rank did in a step what those of all ranks did. Their least gaps are known.
-    pub(crate) fn sum_contacts(&mut self, contacts: &mut [OfContact]) {
-        self.points.sum(&self.ranks, contacts);
+    /// `before`: the records at its start, `end`: its end, s.
+    pub(crate) fn sum_contacts(
+        &mut self,
+        contacts: &mut [OfContact],
+        (before, end): (&[ContactRecord], f64),
+    ) {
+        self.points.sum(&self.ranks, contacts, (before, end));
     }
 }
 

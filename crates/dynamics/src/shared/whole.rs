@@ -22,23 +22,22 @@ pub(super) struct Whole {
 }
 
 impl Whole {
-    pub(super) fn new(
-        system: &System,
-        (halo, rank): (&Halo, usize),
-        watched: &[u32],
-        parts: &Parts,
-    ) -> Whole {
+    pub(super) fn new(system: &System, parts: &Parts, rank: usize) -> Whole {
+        Whole {
+            histories: histories(system, parts, rank),
+            ..Whole::default()
+        }
+    }
+
+    /// Takes the nodes of ranks as they are now.
+    pub(super) fn take(&mut self, system: &System, (halo, rank): (&Halo, usize), watched: &[u32]) {
         let lists = |nodes: &mut dyn Iterator<Item = u32>| {
             let away = nodes.filter(|node| !halo.is_on_first(*node as usize));
             by_rank(away.map(|node| (node, halo.owner[node as usize])), rank)
         };
-        Whole {
-            watched: lists(&mut watched.iter().copied()),
-            touched: lists(&mut contact_nodes(system).into_iter()),
-            all: lists(&mut (0..system.x.len() as u32)),
-            histories: histories(system, parts, rank),
-            room: Vec::new(),
-        }
+        self.watched = lists(&mut watched.iter().copied());
+        self.touched = lists(&mut contact_nodes(system, |_| true).into_iter());
+        self.all = lists(&mut (0..system.x.len() as u32));
     }
 }
 

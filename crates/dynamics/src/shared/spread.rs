@@ -1,0 +1,112 @@
+//! What all ranks are given of contacts that are shared out by what their points may touch.
+
+use std::ops::Range;
+
+use carom_ranks::Ranks;
+
+use super::contacts::{WHOLE, of_point};
+use super::halo::Halo;
+use super::in_reach::InReach;
+use crate::state::State;
+use crate::system::{Motion, System};
+
+/// Vectors of a motion that a rank has to have where it begins to compute a node.
+const VECTORS: usize = 5;
+
+/// The nodes and points of these contacts, those of the first rank first.
+#[derive(Debug, Default)]
+pub(super) struct Spread {
+    nodes: Vec<u32>,
+    /// Where those of each rank begin, and their end.
+    of_nodes: Vec<usize>,
+    points: Vec<u32>,
+    of_points: Vec<usize>,
+}
+
+impl Spread {
+    pub(super) fn new(system: &System, in_reach: &InReach, halo: &Halo, ranks: usize) -> Spread {
+        let (mut nodes, mut points) = (Vec::new(), Vec::new());
+        for (number, contact) in system.contacts.iter().enumerate() {
+            if in_reach.has(number) {
+                nodes.extend(contact.nodes().0);
+                points.extend(system.points_of(number).map(|point| point as u32));
+            }
+        }
+        nodes.sort_unstable();
+        nodes.dedup();
+        let of_nodes = by_rank(&mut nodes, &halo.owner, ranks);
+        let of_points = by_rank(&mut points, &halo.homes.of_point, ranks);
+        Spread {
+            nodes,
+            of_nodes,
+            points,
+            of_points,
+        }
+    }
+
+    /// Gives all ranks the motion of these nodes and the states of these points.
+    pub(super) fn give(&self, ranks: &Ranks, dim: usize, state: &mut State) {
+        give(
+            ranks,
+            (&self.nodes, &self.of_nodes, VECTORS * dim),
+            &mut |node, visit| of_node(&mut state.motion, dim, node, visit),
+        );
+        give(
+            ranks,
+            (&self.points, &self.of_points, WHOLE),
+            &mut |point, visit| of_point(state, point, true, visit),
+        );
+    }
+}
+
+/// Gives all ranks `count` numbers of each of these things.
+fn give(
+    ranks: &Ranks,
+    (things, starts, count): (&[u32], &[usize], usize),
+    each: &mut dyn FnMut(usize, &mut dyn FnMut(&mut f64)),
+) {
+    let mut values = vec![0.0; count * things.len()];
+    let own = starts[ranks.rank()]..starts[ranks.rank() + 1];
+    let mut visit = |range: Range<usize>, values: &mut [f64], gives: bool| {
+        let mut values = values[count * range.start..count * range.end].iter_mut();
+        for &thing in &things[range] {
+            each(thing as usize, &mut |number| {
+                if let Some(value) = values.next() {
+                    match gives {
+                        true => *value = *number,
+                        false => *number = *value,
+                    }
+                }
+            });
+        }
+    };
+    visit(own.clone(), &mut values, true);
+    let starts: Vec<usize> = starts.iter().map(|start| count * start).collect();
+    ranks.gather(&mut values, &starts);
+    visit(0..own.start, &mut values, false);
+    visit(own.end..things.len(), &mut values, false);
+}
+
+/// Visits what a motion has of a node.
+fn of_node(motion: &mut Motion, dim: usize, node: usize, visit: &mut dyn FnMut(&mut f64)) {
+    let Motion {
+        u,
+        v,
+        a,
+        internal_force,
+        contact_force,
+        ..
+    } = motion;
+    for vector in [u, v, a, internal_force, contact_force] {
+        let entries = &mut vector[dim * node..][..dim];
+        entries.iter_mut().for_each(&mut *visit);
+    }
+}
+
+/// Orders things by their rank; where those of each rank begin, and their end.
+fn by_rank(things: &mut [u32], rank: &[u32], ranks: usize) -> Vec<usize> {
+    things.sort_by_key(|&thing| rank[thing as usize]);
+    let starts = 0..=ranks as u32;
+    let before = |first: u32| things.partition_point(|&thing| rank[thing as usize] < first);
+    starts.map(before).collect()
+}
