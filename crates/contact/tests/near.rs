@@ -494,8 +494,9 @@ fn faces_in_reach_are_all_that_a_part_of_the_points_needs() {
     for (scene, contact, first) in cases {
         for motion in [0.2, 0.5 * REACH] {
             let (near, faces) = compare_halves(scene, contact, first, motion);
-            // half of a sheet of six, and what is within an edge and the motion around it
-            let part = (3.0 + 1.0 + 2.0 * motion) / 6.0;
+            // half of a sheet of six, what is within the distance and the motions around it, and a face that is cut
+            let around = f64::sqrt(2.0) * REACH + 2.0 * motion;
+            let part = (3.0 + around + 1.0) / 6.0;
             assert!(near > 3000 && faces < part, "{near} {faces}");
         }
     }
