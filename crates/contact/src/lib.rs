@@ -28,7 +28,7 @@ pub use obstacle::{
     Cylinder, Distance, Motion, Obstacle, Placed, Plane, Profile, RigidSurface, Shape, Side,
     Sphere, Translation, Turn,
 };
-pub use pairing::{Near, OwnPart, Pairing, Step, Tie};
+pub use pairing::{InReach, Near, OwnPart, Pairing, Step, Tie};
 pub use places::{Balance, Frames, Places};
 pub use point::Point;
 pub use rows::Rows;

@@ -388,11 +388,17 @@ fn a_surface_on_itself() {
 
 /// The bound of the motion is that against the drift.
 /// Each of two processes has the points of one half and the faces that these may touch; the faces are found anew before a node can have moved
-/// further than was assumed. `motion`: how far that is, in edges. Near points, and for each process the mean of faces that it has.
-fn compare_halves(scene: &Scene, contact: &Contact, first: usize, motion: f64) -> (usize, f64) {
+/// further than was assumed. `reach` and `motion`: how far points look and how far that is, in edges. Near points, the mean part of the faces that a process has, and the part of looks at
+/// points that was left out.
+fn compare_halves(
+    scene: &Scene,
+    contact: &Contact,
+    first: usize,
+    [reach, motion]: [f64; 2],
+) -> (usize, [f64; 2]) {
     let unknowns = Unknowns::translations(3, scene.x.len());
     let mut u = vec![0.0; 3 * scene.x.len()];
-    let mut from = vec![f64::INFINITY; u.len()];
+    let mut since = f64::INFINITY;
     fn places<'a>(unknowns: &'a Unknowns, scene: &'a Scene, u: &'a [f64]) -> Places<'a> {
         Places {
             unknowns,
@@ -408,25 +414,47 @@ fn compare_halves(scene: &Scene, contact: &Contact, first: usize, motion: f64) -
     let nodes: Vec<u32> = (0..scene.x.len() as u32).collect();
     let (mut random, mut whole, mut all) = (Random(3), Search::default(), Pairing::default());
     let mut gaps = vec![1.0; contact.points.len()];
-    let (mut near_points, mut kept_faces, mut looks) = (0, 0, 0);
+    let (mut near_points, mut kept_faces, mut looks, mut rested) = (0, 0, 0, 0);
+    let mut lists = vec![Vec::new(); contact.points.len()];
+    let (mut wakes, mut travelled) = (vec![f64::NEG_INFINITY; lists.len()], 0.0);
     let mut halves: Vec<(Contact, Vec<u32>, Search)> = Vec::new();
     let parts = 8;
     for step in 0..parts * STEPS {
         let before = u.clone();
         let now = step as f64 / f64::from(parts as u32);
         displacement(scene, first, now, &mut random, &mut u);
-        let ways = u.chunks(3).zip(from.chunks(3));
+        let ways = u.chunks(3).zip(before.chunks(3));
         let ways = ways.map(|(u, v)| u.iter().zip(v).map(|(u, v)| (u - v).powi(2)).sum::<f64>());
-        if ways.fold(0.0, f64::max) >= motion * motion {
-            from.clone_from(&before);
+        let way = ways.fold(0.0, f64::max).sqrt();
+        since += way;
+        if since >= motion {
+            since = way;
             looks += 1;
+            let at = places(&unknowns, scene, &before);
             let inside = |point: usize| gaps[point] < 0.0;
-            let lists = contact.in_reach(
-                &places(&unknowns, scene, &before),
+            // points that are further than a look ahead are not looked at
+            let due: Vec<u32> = (0..contact.points.len() as u32).collect();
+            let due: Vec<u32> = due
+                .into_iter()
+                .filter(|&k| wakes[k as usize] <= travelled + motion)
+                .collect();
+            let found = contact.in_reach(
+                (&at, travelled),
                 &mut whole,
-                [REACH, motion],
-                inside,
+                [reach, REACH, motion],
+                (&due, inside),
             );
+            for (&k, found) in due.iter().zip(found) {
+                let rests = found.faces.is_empty();
+                wakes[k as usize] = travelled
+                    + if rests {
+                        found.clearance
+                    } else {
+                        f64::NEG_INFINITY
+                    };
+                lists[k as usize] = found.faces;
+            }
+            rested += (contact.points.len() - due.len()) as u32;
             let half = |side: bool| {
                 let own = |k: &u32| {
                     (scene.x[contact.points[*k as usize].node() as usize][0] < 2.5) == side
@@ -444,12 +472,13 @@ fn compare_halves(scene: &Scene, contact: &Contact, first: usize, motion: f64) -
             };
             halves = [true, false].map(half).into();
         }
+        travelled += way;
         let now = places(&unknowns, scene, &u);
         all.open_all(std::slice::from_ref(contact), 3);
         let (inside, initial) = (|point: usize| gaps[point] < 0.0, Pairing::default());
         let near = |own| Near {
             first: 0,
-            reach: REACH,
+            reach,
             step: None,
             inside: &inside,
             initial: &initial,
@@ -479,7 +508,8 @@ fn compare_halves(scene: &Scene, contact: &Contact, first: usize, motion: f64) -
         }
     }
     let mean = kept_faces as f64 / f64::from(2 * looks);
-    (near_points, mean / faces.len() as f64)
+    let rested = f64::from(rested) / (f64::from(looks) * contact.points.len() as f64);
+    (near_points, [mean / faces.len() as f64, rested])
 }
 
 #[test]
@@ -492,12 +522,13 @@ fn faces_in_reach_are_all_that_a_part_of_the_points_needs() {
         (&plates, &itself, plates.sheets[2]),
     ];
     for (scene, contact, first) in cases {
-        for motion in [0.2, 0.5 * REACH] {
-            let (near, faces) = compare_halves(scene, contact, first, motion);
+        for [reach, motion] in [[0.1, 0.05], [REACH, 0.2], [REACH, 0.5 * REACH]] {
+            let (near, [faces, rested]) = compare_halves(scene, contact, first, [reach, motion]);
             // half of a sheet of six, what is within the distance and the motions around it, and a face that is cut
-            let around = f64::sqrt(2.0) * REACH + 2.0 * motion;
+            let around = f64::sqrt(2.0) * reach + 2.0 * motion;
             let part = (3.0 + around + 1.0) / 6.0;
-            assert!(near > 3000 && faces < part, "{near} {faces}");
+            assert!(near > 1000 && faces < part, "{near} {faces}");
+            assert!(reach == REACH || rested > 0.1, "{rested}");
         }
     }
 }

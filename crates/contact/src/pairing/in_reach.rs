@@ -1,5 +1,7 @@
 //! Which faces the points of a contact may touch before anything has moved far: what lets several processes share a contact.
 
+use std::f64::consts::SQRT_2;
+
 use carom_mesh::Face;
 use rayon::prelude::*;
 
@@ -7,26 +9,42 @@ use crate::search::faces::{Question, Scratch};
 use crate::search::kept::Kept;
 use crate::{Contact, Places, Search, Target};
 
+/// What a point may touch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct InReach {
+    /// Faces of the target, by their numbers, ascending.
+    pub faces: Vec<u32>,
+    /// How far nodes may move before there is any, m; zero where there is.
+    pub clearance: f64,
+}
+
 impl Contact {
-    /// For each point the faces of the target, ascending, that [`Contact::pair_near`] may pair it with within `reach` (m) while no place on
-    /// the contact moves by `motion` (m) or more. `inside`: whether a point, by its number, is behind the other side; none of the
-    /// others may get deeper than the reach meanwhile, which they do not where `motion` is at most half of it. Without faces on an obstacle.
+    /// What [`Contact::pair_near`] may pair the points `due` (by number, ascending) with within `reach` (m) while no place on
+    /// the contact moves by `motion` (m) or more. `inside`: whether a point is behind the other side; `travelled`: a bound of the motion so far, m,
+    /// since the search was new; `most`: the largest reach, m, which bounds the clearances. Nothing on an obstacle.
     pub fn in_reach(
         &self,
-        places: &Places,
+        (places, travelled): (&Places, f64),
         search: &mut Search,
-        [reach, motion]: [f64; 2],
-        inside: impl Fn(usize) -> bool + Sync,
-    ) -> Vec<Vec<u32>> {
+        [reach, most, motion]: [f64; 3],
+        (due, inside): (&[u32], impl Fn(usize) -> bool + Sync),
+    ) -> Vec<InReach> {
         let Target::Surface(faces) = &self.target else {
-            return vec![Vec::new(); self.points.len()];
+            return vec![InReach::default(); due.len()];
         };
-        self.renew(places, search);
+        search.renew_near(places, faces, (travelled, [0.0; 3]));
+        search.faces.begin_sight([].into_iter(), (places, faces));
+        for &point in due {
+            if let Some(view) = self.view(point as usize) {
+                search.faces.see(view, places);
+            }
+        }
         let tree = &search.faces;
-        let points = self.points.par_iter().enumerate();
-        let of_point = |(k, point): (usize, &crate::Point)| {
-            let (x, view) = (point.place(places), self.view(k));
-            let mut limit = self.limit(k, reach);
+        let of_point = |&point: &u32| {
+            let k = point as usize;
+            let (x, view) = (self.points[k].place(places), self.view(k));
+            // whoever is outside gets no deeper than both sides move
+            let mut limit = self.limit(k, reach).max(2.0 * SQRT_2 * motion);
             if inside(k) {
                 let question = Question {
                     x,
@@ -39,11 +57,17 @@ impl Contact {
                 let all = view.map_or(f64::INFINITY, |view| view.reach());
                 limit = limit.max(found.map_or(all, |(foot, _)| foot.distance));
             }
-            let mut found = Vec::new();
-            tree.in_reach((places, faces), (view, &x), [limit, motion], &mut found);
+            let mut found = InReach::default();
+            let of = (view, &x);
+            tree.in_reach((places, faces), of, [limit, motion], &mut found.faces);
+            if found.faces.is_empty() {
+                found.clearance = tree
+                    .rest_of((places, faces), of, [limit, self.limit(k, most)])
+                    .max(motion);
+            }
             found
         };
-        points.map(of_point).collect()
+        due.par_iter().map(of_point).collect()
     }
 
     /// The contact with some faces of its target alone, by their numbers, ascending. Points see of these what they see of all.

@@ -150,7 +150,7 @@ impl Contact {
             (None, _) if inside => (None, 0.0),
             (_, Some(view)) => (
                 None,
-                tree.rest_of(target, view, &x, [limit, self.limit(k, reach.most)]),
+                tree.rest_of(target, (Some(view), &x), [limit, self.limit(k, reach.most)]),
             ),
             // both sides move
             (Some((foot, _)), None) => (None, 0.5 * (foot.distance - limit)),

@@ -27,6 +27,7 @@ use carom_algebra::csr::Csr;
 
 use self::block::Block;
 use self::found::Look;
+pub use self::in_reach::InReach;
 use self::merge::Merge;
 pub use self::near::{Near, OwnPart, Step};
 use self::share::{Quadrature, Share};

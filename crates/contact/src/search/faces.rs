@@ -298,9 +298,8 @@ impl FaceTree {
     /// view within the limit; at most a part of the `farthest` limit (m).
     pub fn rest_of(
         &self,
-        (places, faces): (&Places, &[Face]),
-        view: View,
-        x: &[f64; 3],
+        target: (&Places, &[Face]),
+        (view, x): (Option<View>, &[f64; 3]),
         [limit, farthest]: [f64; 2],
     ) -> f64 {
         let Some(tree) = &self.tree else {
@@ -308,8 +307,7 @@ impl FaceTree {
         };
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let most = LONGEST * farthest;
-        let target = (places, faces);
-        let measure = |item: u32| self.rest_from(target, (Some(view), x), item, [limit, most]);
+        let measure = |item: u32| self.rest_from(target, (view, x), item, [limit, most]);
         // a distance is at most the limit and twice its measure
         let found = tree.closest(&there, most, self.moved + limit + most, measure);
         found.map_or(most, |(_, rest)| rest.max(0.0))

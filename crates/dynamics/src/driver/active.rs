@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::shared::Own;
+use crate::shared::{InReach, Own};
 use crate::system::System;
 
 /// Gap up to which a point is near, over the mean diagonal of the faces. In a stable step a wave crosses no more than the height of
@@ -24,6 +24,8 @@ pub(super) struct Active {
     before: Vec<u32>,
     /// Gap up to which points of each contact are near, m.
     pub(super) reaches: Vec<f64>,
+    /// The same of contacts that several ranks have, where nodes move little; empty without any.
+    looks_to: Vec<Option<f64>>,
     /// Whether the last attempt was of this kind, and whether the state is its end.
     offered: bool,
     goes_on: bool,
@@ -43,10 +45,25 @@ impl Active {
             reaches: contacts
                 .map(|(contact, faces)| REACH * contact.mean_diagonal(faces, &system.x))
                 .collect(),
+            looks_to: Vec::new(),
             offered: false,
             goes_on: false,
             begins: true,
         }
+    }
+
+    /// Lets points of contacts that several ranks have look as far as the faces are known.
+    pub(super) fn look_to(&mut self, in_reach: &InReach) {
+        let contacts = 0..self.reaches.len();
+        self.looks_to.clear();
+        self.looks_to
+            .extend(contacts.map(|contact| in_reach.reach(contact)));
+    }
+
+    /// Gap up to which points of a contact are looked at, m.
+    pub(super) fn reach(&self, contact: usize) -> f64 {
+        let narrower = self.looks_to.get(contact).copied().flatten();
+        narrower.unwrap_or(self.reaches[contact])
     }
 
     /// Leaves the points that this process does not have to others.

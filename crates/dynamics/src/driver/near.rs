@@ -91,7 +91,7 @@ impl Driver {
         if placed.replace(row) != Some(row) {
             self.far.forget_places();
         }
-        let reach = self.active.reaches[number];
+        let reach = self.active.reach(number);
         if self.far.are_apart(number, reach, &places) {
             return search.rest_anew();
         }

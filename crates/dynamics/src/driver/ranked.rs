@@ -75,6 +75,7 @@ impl Driver {
         }
         if let Some(mut direct) = self.direct.take() {
             self.take_homes(&mut shared, &mut direct);
+            self.active.look_to(&shared.in_reach);
             self.direct = Some(direct);
         }
         self.shared = Some(Box::new(shared));
@@ -107,7 +108,7 @@ impl Driver {
             nodes: shared.halo.present.len(),
             points: self.active.own_points(),
             looked_points: shared.looked,
-            contact_looks: shared.in_reach.looks,
+            contact_looks: shared.homes,
             halo_bytes: shared.halo.bytes(self.system.dim),
             sent_bytes: shared.ranks.sent_bytes(),
             shared_nodes: shared.shared_nodes,
@@ -120,13 +121,16 @@ impl Driver {
         let own = shared.own_points(&system);
         self.narrowed.resize(system.contacts.len(), None);
         for (number, own) in own.iter().enumerate() {
+            if own == self.active.own_of(number) {
+                continue;
+            }
+            self.search[number] = Search::default();
             if let Own::Some(Part {
                 faces: Some(faces), ..
             }) = own
             {
                 let contact = &system.contacts[number];
                 self.narrowed[number] = Some(contact.with_some_faces(faces));
-                self.search[number] = Search::default();
             }
         }
         self.far = Far::of(&system, |contact| own[contact] == Own::All);
@@ -145,10 +149,12 @@ impl Driver {
     ) -> Result<(), Error> {
         let (begin, before) = (Instant::now(), self.phases);
         let (dim, mut clean) = (self.system.dim, clean);
-        if shared.in_reach.is_due() {
-            shared.find_homes_anew(&self.system, &mut self.state);
-            self.take_homes(shared, direct);
-            clean = false;
+        if shared.in_reach.is_due(&self.system) {
+            if shared.look_for_faces(&self.system, &mut self.state) {
+                self.take_homes(shared, direct);
+                clean = false;
+            }
+            self.active.look_to(&shared.in_reach);
         }
         self.begin_leap(direct, clean);
         self.place_end(direct);
@@ -180,7 +186,7 @@ impl Driver {
             },
         };
         let told = shared.sum_up(parts, energies, &mut contacts, &told);
-        if shared.in_reach.travel(&contacts) {
+        if shared.in_reach.travel(&self.system, &contacts) {
             self.of_contacts = contacts;
             return self.step_on_ranks(shared, direct, false);
         }

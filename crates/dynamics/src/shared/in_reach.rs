@@ -5,41 +5,49 @@
 
 use std::f64::consts::SQRT_2;
 
-use carom_contact::{Contact, Search, Sliding, Target};
+use carom_contact::{Contact, Places, Search, Sliding, Target};
 
 use crate::of_contact::OfContact;
 use crate::state::State;
 use crate::system::System;
 
-/// How far nodes may move, over the distance from which on nothing is looked at.
-const PART: f64 = 0.4;
+/// How far nodes may move, over the largest distance at which anything is looked at.
+const PART: f64 = 0.1;
 
 /// Steps of a motion as large as that of the last one that shall fit.
 const STEPS: f64 = 4.0;
 
+/// Motions that a step may have, over that of the last one: the least, and the one that is assumed.
+const LEAST: f64 = 2.0;
+const ASSUMED: f64 = 4.0;
+
 /// Of each contact the faces in reach of each point; none of contacts that one rank has as a whole.
 pub(crate) type Faces = Vec<Option<Vec<Vec<u32>>>>;
 
-/// What is known of the motion of contacts since the faces in reach were found.
+/// What the points of contacts may touch until nodes have moved far.
 #[derive(Debug, Default)]
 pub(crate) struct InReach {
     /// None of those that one rank has as a whole.
     contacts: Vec<Option<Followed>>,
-    /// How often it was found.
-    pub(crate) looks: usize,
+    /// All that points may touch, with faces of before as long as no other comes up: so that homes stay.
+    pub(crate) faces: Faces,
 }
 
 #[derive(Debug)]
 struct Followed {
     search: Search,
-    /// Gap up to which points are near, m.
+    /// Gap up to which points are near, m, and the largest that this may be.
     reach: f64,
+    most: f64,
     /// How far nodes may move, m.
     motion: f64,
-    /// Bound of how far they have, m.
-    travelled: f64,
-    /// The same of the last step.
+    /// Bounds of how far they have, when faces were looked for and since, and in the last step, m.
+    before: f64,
+    since: f64,
     last: f64,
+    /// Of each point the faces that were found last, and the bound of the motion up to which it touches nothing without any, m.
+    found: Vec<Vec<u32>>,
+    wakes: Vec<f64>,
 }
 
 impl InReach {
@@ -50,18 +58,23 @@ impl InReach {
         at_ends: impl Fn(usize) -> bool,
     ) -> InReach {
         let contacts = system.contacts.iter().zip(reaches).enumerate();
-        let of = |(number, (contact, &reach)): (usize, (&Contact, &f64))| {
-            (follows(contact) && at_ends(number) && reach.is_finite()).then(|| Followed {
+        let of = |(number, (contact, &most)): (usize, (&Contact, &f64))| {
+            let points = contact.points.len();
+            (follows(contact) && at_ends(number) && most.is_finite()).then(|| Followed {
                 search: Search::default(),
-                reach,
-                motion: least(reach),
-                travelled: f64::INFINITY,
+                reach: 0.0,
+                most,
+                motion: 0.0,
+                before: 0.0,
+                since: 0.0,
                 last: 0.0,
+                found: vec![Vec::new(); points],
+                wakes: vec![f64::NEG_INFINITY; points],
             })
         };
         InReach {
             contacts: contacts.map(of).collect(),
-            looks: 0,
+            faces: Vec::new(),
         }
     }
 
@@ -70,46 +83,95 @@ impl InReach {
         self.contacts[contact].is_some()
     }
 
-    /// Whether the faces in reach are to be found before the next step.
-    pub(crate) fn is_due(&self) -> bool {
-        let mut contacts = self.contacts.iter().flatten();
-        contacts.any(|of| of.travelled + 2.0 * of.last > of.motion)
+    /// Gap up to which points of a contact are looked at, m; none of contacts that one rank has as a whole.
+    pub(crate) fn reach(&self, contact: usize) -> Option<f64> {
+        self.contacts[contact].as_ref().map(|of| of.reach)
+    }
+
+    /// Whether faces are to be looked for before the next step.
+    pub(crate) fn is_due(&self, system: &System) -> bool {
+        let mut contacts = self.contacts.iter().zip(&system.contacts);
+        contacts.any(|(of, contact)| {
+            let due = |of: &Followed| {
+                let reach = contact.reach(LEAST * of.last, of.most);
+                of.since + LEAST * of.last > of.motion || reach > of.reach
+            };
+            of.as_ref().is_some_and(due)
+        })
     }
 
     /// Takes the motions of a step; whether one was further than was assumed, so that a point may touch a face that was not in reach.
-    pub(crate) fn travel(&mut self, contacts: &[OfContact]) -> bool {
+    pub(crate) fn travel(&mut self, system: &System, steps: &[OfContact]) -> bool {
         let mut is_left = false;
-        let pairs = self.contacts.iter_mut().zip(contacts);
-        for (of, step) in pairs.filter_map(|(of, step)| Some((of.as_mut()?, step))) {
+        let contacts = self.contacts.iter_mut().zip(&system.contacts).zip(steps);
+        for ((of, contact), step) in contacts {
+            let Some(of) = of else { continue };
             of.last = step.motion;
-            of.travelled += step.motion;
-            is_left |= of.travelled > of.motion;
+            of.since += step.motion;
+            let reach = contact.reach(step.motion, of.most);
+            is_left |= of.since > of.motion || reach > of.reach;
         }
         is_left
     }
 
-    /// The faces in reach in a state whose nodes are all known here.
-    pub(crate) fn find(&mut self, system: &System, state: &State) -> Faces {
-        self.looks += 1;
-        let motion = &state.motion;
+    /// Looks for faces in a state the motion of whose contacts is known here; whether any has come into reach.
+    pub(crate) fn look(&mut self, system: &System, state: &State) -> bool {
+        let (motion, gaps) = (&state.motion, &state.interface.gap);
         let places = system.places(state.time, &motion.u, &motion.frames);
-        let gaps = &state.interface.gap;
-        let contacts = self.contacts.iter_mut().enumerate();
-        let of = |(number, of): (usize, &mut Option<Followed>)| {
-            let of = of.as_mut()?;
-            of.travelled = 0.0;
-            of.motion = least(of.reach).max(STEPS * of.last);
-            let first = system.first_point[number];
-            let inside = |point: usize| gaps[first + point] < 0.0;
-            let reach = [of.reach, of.motion];
-            Some(system.contacts[number].in_reach(&places, &mut of.search, reach, inside))
-        };
-        contacts.map(of).collect()
+        for (number, of) in self.contacts.iter_mut().enumerate() {
+            if let Some(of) = of {
+                let gaps = &gaps[system.points_of(number)];
+                of.look(&system.contacts[number], &places, gaps);
+            }
+        }
+        let found = self.contacts.iter().map(|of| Some(&of.as_ref()?.found));
+        let known = found.clone().zip(&self.faces).all(|pair| match pair {
+            (Some(found), Some(known)) => {
+                let mut pairs = found.iter().zip(known);
+                pairs.all(|(found, known)| found.iter().all(|face| known.contains(face)))
+            }
+            _ => true,
+        });
+        let changes = self.faces.is_empty() || !known;
+        if changes {
+            self.faces = found.map(|found| found.cloned()).collect();
+        }
+        changes
     }
 }
 
-fn least(reach: f64) -> f64 {
-    PART * SQRT_2 * reach
+impl Followed {
+    fn look(&mut self, contact: &Contact, places: &Places, gaps: &[f64]) {
+        self.before += self.since;
+        self.since = 0.0;
+        self.motion = (PART * SQRT_2 * self.most).max(STEPS * self.last);
+        let [least, reach] =
+            [LEAST, ASSUMED].map(|part| contact.reach(part * self.last, self.most));
+        if !(least..=ASSUMED * reach).contains(&self.reach) {
+            if reach > self.reach {
+                self.wakes.fill(f64::NEG_INFINITY);
+            }
+            self.reach = reach;
+        }
+        let until = self.before + self.motion;
+        let wakes = self.wakes.iter().zip(0..);
+        let due: Vec<u32> = wakes
+            .filter(|(wake, _)| **wake <= until)
+            .map(|(_, point)| point)
+            .collect();
+        let inside = |point: usize| gaps[point] < 0.0;
+        let reach = [self.reach, self.most, self.motion];
+        let at = (places, self.before);
+        let found = contact.in_reach(at, &mut self.search, reach, (&due, inside));
+        for (point, found) in due.into_iter().zip(found) {
+            let point = point as usize;
+            self.wakes[point] = match found.faces.is_empty() {
+                true => self.before + found.clearance,
+                false => f64::NEG_INFINITY,
+            };
+            self.found[point] = found.faces;
+        }
+    }
 }
 
 /// Whether the points of a contact are paired one by one, with the faces that they come to.

@@ -28,7 +28,6 @@ use crate::system::{Motion, System};
 use crate::update::Sums;
 use halo::{Halo, contact_nodes, messages, pack, unpack};
 pub(crate) use homes::{Own, Part};
-use in_reach::Faces;
 pub(crate) use in_reach::InReach;
 use parts::Partition;
 pub use parts::SharedNodes;
@@ -39,9 +38,10 @@ pub(crate) struct Shared {
     pub(crate) ranks: Ranks,
     pub(crate) shared_nodes: SharedNodes,
     pub(crate) halo: Halo,
-    /// What is known of the faces that points may touch, and these faces.
+    /// What is known of the faces that points may touch.
     pub(crate) in_reach: InReach,
-    faces: Faces,
+    /// How often homes have been found.
+    pub(crate) homes: usize,
     /// The most points of this rank so far that might touch something.
     pub(crate) looked: usize,
     /// The rank of each element of each body.
@@ -88,7 +88,7 @@ impl Shared {
             shared_nodes: partition.shared,
             halo: Halo::default(),
             in_reach,
-            faces: Vec::new(),
+            homes: 0,
             looked: 0,
             watched: watched.clone(),
             bodies: Vec::new(),
@@ -105,7 +105,8 @@ impl Shared {
             spread: spread::Spread::default(),
             elements,
         };
-        shared.find_homes(system, state);
+        shared.in_reach.look(system, state);
+        shared.find_homes(system);
         let mut border = vec![false; system.x.len()];
         let shared_later = contact_nodes(system, |contact| shared.in_reach.has(contact));
         for &node in shared.halo.shared.iter().chain(&shared_later) {
@@ -128,11 +129,10 @@ impl Shared {
         shared
     }
 
-    /// Finds which rank has which contact points, in a state whose contacts all ranks know.
-    fn find_homes(&mut self, system: &System, state: &State) {
-        self.faces = self.in_reach.find(system, state);
+    /// Finds which rank has which contact points.
+    fn find_homes(&mut self, system: &System) {
         let (rank, dim) = (self.ranks.rank(), system.dim);
-        let halo = Halo::new(system, (&self.elements, &self.faces), rank);
+        let halo = Halo::new(system, (&self.elements, &self.in_reach.faces), rank);
         self.sends = messages(&halo.sends, dim);
         self.receives = messages(&halo.receives, dim);
         self.own = vec![0.0; dim * halo.shared.len()];
@@ -142,12 +142,19 @@ impl Shared {
         self.spread = spread::Spread::new(system, &self.in_reach, &halo, self.ranks.count());
         self.whole.take(system, (&halo, rank), &self.watched.nodes);
         self.halo = halo;
+        self.homes += 1;
     }
 
-    /// Finds anew which rank has which contact points. All ranks ask together.
-    pub(crate) fn find_homes_anew(&mut self, system: &System, state: &mut State) {
+    /// Looks for the faces that points may touch; whether other ranks have contact points now, and their nodes, which all ranks know then. All ranks
+    /// ask together.
+    pub(crate) fn look_for_faces(&mut self, system: &System, state: &mut State) -> bool {
+        self.spread.give_places(&self.ranks, system.dim, state);
+        if !self.in_reach.look(system, state) {
+            return false;
+        }
         self.spread.give(&self.ranks, system.dim, state);
-        self.find_homes(system, state);
+        self.find_homes(system);
+        true
     }
 
     /// Whether this is the first rank.
@@ -274,7 +281,7 @@ impl Shared {
     pub(crate) fn own_points(&mut self, system: &System) -> Vec<Own> {
         let (halo, rank) = (&self.halo, self.ranks.rank());
         let knows = |node: u32| halo.present.binary_search(&node).is_ok();
-        let own = halo.homes.own(system, (rank, &self.faces), knows);
+        let own = halo.homes.own(system, (rank, &self.in_reach.faces), knows);
         let looked = own.iter().zip(0..).map(|(own, contact)| match own {
             Own::All => system.points_of(contact).len(),
             Own::Some(part) => part.looked.len(),

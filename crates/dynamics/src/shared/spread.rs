@@ -1,11 +1,11 @@
-//! What all ranks are given of contacts that are shared out by what their points may touch.
+//! What all ranks are given of contacts where some are shared out by what their points may touch.
 
 use std::ops::Range;
 
 use carom_ranks::Ranks;
 
 use super::contacts::{WHOLE, of_point};
-use super::halo::Halo;
+use super::halo::{Halo, contact_nodes};
 use super::in_reach::InReach;
 use crate::state::State;
 use crate::system::{Motion, System};
@@ -13,7 +13,7 @@ use crate::system::{Motion, System};
 /// Vectors of a motion that a rank has to have where it begins to compute a node.
 const VECTORS: usize = 5;
 
-/// The nodes and points of these contacts, those of the first rank first.
+/// The nodes and points of all contacts, those of the first rank first; none where no contact is shared out so.
 #[derive(Debug, Default)]
 pub(super) struct Spread {
     nodes: Vec<u32>,
@@ -25,15 +25,13 @@ pub(super) struct Spread {
 
 impl Spread {
     pub(super) fn new(system: &System, in_reach: &InReach, halo: &Halo, ranks: usize) -> Spread {
-        let (mut nodes, mut points) = (Vec::new(), Vec::new());
-        for (number, contact) in system.contacts.iter().enumerate() {
-            if in_reach.has(number) {
-                nodes.extend(contact.nodes().0);
-                points.extend(system.points_of(number).map(|point| point as u32));
-            }
+        let contacts = 0..system.contacts.len();
+        if !contacts.clone().any(|contact| in_reach.has(contact)) {
+            return Spread::default();
         }
-        nodes.sort_unstable();
-        nodes.dedup();
+        // those of other contacts go with the nodes that they share
+        let mut nodes = contact_nodes(system, |_| true);
+        let mut points: Vec<u32> = (0..system.points() as u32).collect();
         let of_nodes = by_rank(&mut nodes, &halo.owner, ranks);
         let of_points = by_rank(&mut points, &halo.homes.of_point, ranks);
         Spread {
@@ -44,18 +42,31 @@ impl Spread {
         }
     }
 
+    /// Gives all ranks the places of these nodes and the gaps of these points.
+    pub(super) fn give_places(&self, ranks: &Ranks, dim: usize, state: &mut State) {
+        let u = &mut state.motion.u;
+        let of_nodes = (&self.nodes[..], &self.of_nodes[..], dim);
+        give(ranks, of_nodes, &mut |node, visit| {
+            u[dim * node..][..dim].iter_mut().for_each(visit);
+        });
+        let gaps = &mut state.interface.gap;
+        let of_points = (&self.points[..], &self.of_points[..], 1);
+        give(ranks, of_points, &mut |point, visit| {
+            visit(&mut gaps[point])
+        });
+    }
+
     /// Gives all ranks the motion of these nodes and the states of these points.
     pub(super) fn give(&self, ranks: &Ranks, dim: usize, state: &mut State) {
-        give(
-            ranks,
-            (&self.nodes, &self.of_nodes, VECTORS * dim),
-            &mut |node, visit| of_node(&mut state.motion, dim, node, visit),
-        );
-        give(
-            ranks,
-            (&self.points, &self.of_points, WHOLE),
-            &mut |point, visit| of_point(state, point, true, visit),
-        );
+        let of_nodes = (&self.nodes[..], &self.of_nodes[..], VECTORS * dim);
+        let motion = &mut state.motion;
+        give(ranks, of_nodes, &mut |node, visit| {
+            of_node(motion, dim, node, visit)
+        });
+        let of_points = (&self.points[..], &self.of_points[..], WHOLE);
+        give(ranks, of_points, &mut |point, visit| {
+            of_point(state, point, true, visit)
+        });
     }
 }
 
