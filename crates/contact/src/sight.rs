@@ -310,31 +310,38 @@ impl View<'_> {
         }
     }
 
+    /// The least height of the triangles at the corners of the faces around the viewer, m; zero if one is curved.
+    pub(crate) fn height_around(&self, places: &Places) -> f64 {
+        let around = self.sight.around.of(self.point).iter();
+        let around = around.map(|&k| &self.sight.faces[k as usize]);
+        turned::least_height(around, places)
+    }
+
     /// The most that nodes may move, m, before a face that is out of view, wherever the foot on it is, may come into it; zero of one
-    /// that may be in view. Normals as in [`View::shows`].
+    /// that may be in view. Normals as in [`View::shows`], `height` that of [`View::height_around`], no corners of a curved face.
     pub(crate) fn hidden(
         &self,
-        (item, face): (u32, &Face),
-        places: &Places,
+        (item, corners): (u32, Option<&Corners>),
+        height: f64,
         normals: &[[f64; 3]],
     ) -> f64 {
         if self.is_beside(item) {
             return f64::INFINITY;
         }
-        if self.sight.round {
+        let Some(corners) = corners.filter(|_| !self.sight.round) else {
             return 0.0;
-        }
+        };
         let around = self.sight.around.of(self.point).iter();
-        let around = around.map(|&k| (&self.sight.faces[k as usize], &normals[k as usize]));
-        turned::until_opposed(face, around, (OPPOSED, places))
+        let around = around.map(|&k| &normals[k as usize]);
+        turned::until_opposed(corners, (around, height), OPPOSED)
     }
 
-    /// The most that nodes may move, m, before the viewer, at `x` (m) and deep behind a face, may be within the depth or before the face.
-    pub(crate) fn behind(&self, face: &Face, x: &[f64; 3], places: &Places) -> f64 {
-        match self.sight.round {
-            true => 0.0,
-            false => turned::until_behind(face, (x, self.sight.depth[self.point]), places),
-        }
+    /// The most that nodes may move, m, before the viewer, at `x` (m) and deep behind a face, may be within the depth or before the face; no
+    /// corners of a curved one.
+    pub(crate) fn behind(&self, corners: Option<&Corners>, x: &[f64; 3]) -> f64 {
+        let corners = corners.filter(|_| !self.sight.round);
+        let depth = self.sight.depth[self.point];
+        corners.map_or(0.0, |corners| turned::until_behind(corners, (x, depth)))
     }
 
     /// Whether a face is beside the viewer, or of a part that it does not touch, and so never in view.

@@ -180,6 +180,22 @@ impl Ranks {
         link.gather(values, starts);
     }
 
+    /// Gives each rank's numbers, however many, to all: those of the first rank first.
+    pub fn gather_all(&self, own: &[f64]) -> Vec<f64> {
+        let [rank, count] = self.place();
+        let mut counts = vec![0.0; count];
+        counts[rank] = own.len() as f64;
+        self.gather(&mut counts, &(0..=count).collect::<Vec<_>>());
+        let mut starts = vec![0];
+        for count in counts {
+            starts.push(starts[starts.len() - 1] + count as usize);
+        }
+        let mut all = vec![0.0; starts[count]];
+        all[starts[rank]..starts[rank + 1]].copy_from_slice(own);
+        self.gather(&mut all, &starts);
+        all
+    }
+
     /// The text of the first rank that has one, with that rank; none if none has. All ranks ask together.
     pub fn first_text(&self, own: Option<&str>) -> Option<(usize, String)> {
         let [rank, count] = self.place();

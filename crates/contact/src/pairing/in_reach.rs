@@ -32,8 +32,12 @@ impl Contact {
         let Target::Surface(faces) = &self.target else {
             return vec![InReach::default(); due.len()];
         };
+        let unknown = Kept::default();
         search.renew_near(places, faces, (travelled, [0.0; 3]));
-        search.faces.begin_sight([].into_iter(), (places, faces));
+        if self.sight.is_some() {
+            let nothing = std::iter::repeat_n(&unknown, due.len());
+            search.faces.begin_sight(nothing, (places, faces));
+        }
         for &point in due {
             if let Some(view) = self.view(point as usize) {
                 search.faces.see(view, places);

@@ -60,6 +60,15 @@ pub(crate) struct Question<'a> {
     pub guess: Option<Guess>,
 }
 
+/// What a point sees, if that is not all, and the least height around it.
+struct Outlook<'a>(Option<(View<'a>, f64)>);
+
+impl<'a> Outlook<'a> {
+    fn new(view: Option<View<'a>>, places: &Places) -> Outlook<'a> {
+        Outlook(view.map(|view| (view, view.height_around(places))))
+    }
+}
+
 /// What questions that follow each other share.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
@@ -307,7 +316,8 @@ impl FaceTree {
         };
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let most = LONGEST * farthest;
-        let measure = |item: u32| self.rest_from(target, (view, x), item, [limit, most]);
+        let outlook = Outlook::new(view, target.0);
+        let measure = |item: u32| self.rest_from(target, (&outlook, x), item, [limit, most]);
         // a distance is at most the limit and twice its measure
         let found = tree.closest(&there, most, self.moved + limit + most, measure);
         found.map_or(most, |(_, rest)| rest.max(0.0))
@@ -329,7 +339,9 @@ impl FaceTree {
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let around = limit + 2.0 * motion + self.moved + tree.rounding(&there);
         tree.near(&there, around, found);
-        found.retain(|&item| self.rest_from(target, (view, x), item, [limit, motion]) < motion);
+        let outlook = Outlook::new(view, target.0);
+        let rest = |item: u32| self.rest_from(target, (&outlook, x), item, [limit, motion]);
+        found.retain(|&item| rest(item) < motion);
     }
 
     /// The most that nodes may move, m, before a face may come into view within the `limit` (m) of a place; that or less where it
@@ -337,7 +349,7 @@ impl FaceTree {
     fn rest_from(
         &self,
         (places, faces): (&Places, &[Face]),
-        (view, x): (Option<View>, &[f64; 3]),
+        (outlook, x): (&Outlook, &[f64; 3]),
         item: u32,
         [limit, most]: [f64; 2],
     ) -> f64 {
@@ -352,13 +364,13 @@ impl FaceTree {
             }
             None => 0.0,
         };
-        if let Some(view) = view {
-            if rest < most {
-                rest = rest.max(view.hidden((item, face), places, &self.normals));
-            }
-            if rest < most {
-                rest = rest.max(view.behind(face, x, places));
-            }
+        if let Some((view, height)) = outlook.0.filter(|_| rest < most) {
+            self.with_corners((item, face), places, |corners| {
+                rest = rest.max(view.hidden((item, corners), height, &self.normals));
+                if rest < most {
+                    rest = rest.max(view.behind(corners, x));
+                }
+            });
         }
         if rest < most {
             let (foot, _) = foot_on(places, faces, item, x);
@@ -375,15 +387,22 @@ impl FaceTree {
         x: &[f64; 3],
         places: &Places,
     ) -> bool {
-        let made;
-        let corners = match self.corners.of(item) {
-            Some(taken) => taken,
-            None => {
-                made = Corners::of(face, places);
-                made.as_ref()
-            }
-        };
-        corners.is_some_and(|corners| view.is_blind((item, corners), x, &self.normals))
+        self.with_corners((item, face), places, |corners| {
+            corners.is_some_and(|corners| view.is_blind((item, corners), x, &self.normals))
+        })
+    }
+
+    /// Uses the corners of a face, those that were taken if they were; none of a curved one.
+    fn with_corners<R>(
+        &self,
+        (item, face): (u32, &Face),
+        places: &Places,
+        with: impl FnOnce(Option<&Corners>) -> R,
+    ) -> R {
+        match self.corners.of(item) {
+            Some(taken) => with(taken),
+            None => with(Corners::of(face, places).as_ref()),
+        }
     }
 
     /// Whether a face is in a view.

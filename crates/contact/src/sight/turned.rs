@@ -104,38 +104,32 @@ fn angle(a: &Vec3, b: &Vec3) -> f64 {
     a.dot(b).clamp(-1.0, 1.0).acos()
 }
 
-/// Until a face is anywhere turned against one of those around a point, given with their normals, by more than the angle of the
-/// cosine `opposed`.
+/// The least height of the triangles at the corners of some faces, m; zero if one is curved.
+pub(super) fn least_height<'a>(faces: impl Iterator<Item = &'a Face>, places: &Places) -> f64 {
+    let heights = faces.map(|face| Corners::of(face, places).map_or(0.0, |corners| corners.height));
+    heights.fold(f64::INFINITY, f64::min)
+}
+
+/// Until a face is anywhere turned against one of those around a point, given with their normals and [`least_height`], by more than the angle of
+/// the cosine `opposed`.
 pub(super) fn until_opposed<'a>(
-    face: &Face,
-    around: impl Iterator<Item = (&'a Face, &'a [f64; 3])>,
-    (opposed, places): (f64, &Places),
+    corners: &Corners,
+    (around, height): (impl Iterator<Item = &'a [f64; 3]>, f64),
+    opposed: f64,
 ) -> f64 {
-    let Some(corners) = Corners::of(face, places) else {
-        return 0.0;
-    };
-    let (normals, mut height) = (corners.normals(), corners.height);
+    let normals = corners.normals();
     // normals inside of a face are between those of its corners, which stay around their mean
     let mean = normals.iter().sum::<Vec3>();
     let mean = mean / mean.norm();
     let warp = normals.iter().map(|n| angle(n, &mean)).fold(0.0, f64::max);
-    let mut widest = 0.0_f64;
-    for (own, normal) in around {
-        let Some(own) = Corners::of(own, places) else {
-            return 0.0;
-        };
-        height = height.min(own.height);
-        widest = widest.max(angle(&Vec3::from(*normal), &mean));
-    }
-    let free = opposed.acos() - widest - warp;
+    let widest = around.map(|normal| angle(&Vec3::from(*normal), &mean));
+    let free = opposed.acos() - widest.fold(0.0, f64::max) - warp;
+    let height = height.min(corners.height);
     motion(height, (0.5 * free).min(0.9 * FRAC_PI_2 - warp))
 }
 
 /// Until a place behind a straight face is within the depth of it, or before it; zero if it may be so now.
-pub(super) fn until_behind(face: &Face, (x, depth): (&[f64; 3], f64), places: &Places) -> f64 {
-    let Some(corners) = Corners::of(face, places) else {
-        return 0.0;
-    };
+pub(super) fn until_behind(corners: &Corners, (x, depth): (&[f64; 3], f64)) -> f64 {
     // no more than the distance of the foot
     let distance = corners.under(x);
     let deep = 0.5 * (distance - SQRT_2 * depth);

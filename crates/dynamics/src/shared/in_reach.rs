@@ -1,11 +1,12 @@
 //! Which faces the points of contacts between surfaces may touch before nodes have moved far, and when that has to be found anew.
 //!
-//! It is found from the places of all nodes of such a contact, which ranks give each other for it, by all of them alike. Points whose faces have
+//! It is found from the places of all nodes of such a contact, which ranks give each other for it, by each for some of the points. Points whose faces have
 //! no node in common are then of different [families](super::homes), until nodes have moved by what was assumed.
 
 use std::f64::consts::SQRT_2;
 
 use carom_contact::{Contact, Places, Search, Sliding, Target};
+use carom_ranks::Ranks;
 
 use crate::of_contact::OfContact;
 use crate::state::State;
@@ -114,39 +115,56 @@ impl InReach {
         is_left
     }
 
-    /// Looks for faces in a state the motion of whose contacts is known here; whether any has come into reach.
-    pub(crate) fn look(&mut self, system: &System, state: &State) -> bool {
+    /// Looks for faces in a state the places of whose contacts are known here, each rank for some of the points; whether any face has come into
+    /// reach. All ranks ask together.
+    pub(crate) fn look(&mut self, system: &System, state: &State, ranks: &Ranks) -> bool {
         let (motion, gaps) = (&state.motion, &state.interface.gap);
         let places = system.places(state.time, &motion.u, &motion.frames);
+        let mut told = Vec::new();
         for (number, of) in self.contacts.iter_mut().enumerate() {
             if let Some(of) = of {
+                let first = told.len();
                 let gaps = &gaps[system.points_of(number)];
-                of.look(&system.contacts[number], &places, gaps);
+                let contact = &system.contacts[number];
+                of.look(contact, &places, (gaps, ranks), &mut told);
+                let count = told.len() - first;
+                told.splice(first..first, [number as f64, count as f64]);
             }
         }
-        let found = self.contacts.iter().map(|of| Some(&of.as_ref()?.found));
-        let known = found.clone().zip(&self.faces).all(|pair| match pair {
-            (Some(found), Some(known)) => {
-                let mut pairs = found.iter().zip(known);
-                pairs.all(|(found, known)| found.iter().all(|face| known.contains(face)))
+        let all = ranks.gather_all(&told);
+        let mut changes = self.faces.is_empty();
+        let mut rest = &all[..];
+        while let [number, count, behind @ ..] = rest {
+            let (lists, behind) = behind.split_at(*count as usize);
+            rest = behind;
+            let number = *number as usize;
+            if let Some(of) = &mut self.contacts[number] {
+                let known = self.faces.get(number).and_then(Option::as_ref);
+                changes |= of.take(lists, known);
             }
-            _ => true,
-        });
-        let changes = self.faces.is_empty() || !known;
+        }
         if changes {
-            self.faces = found.map(|found| found.cloned()).collect();
+            let found = |of: &Option<Followed>| Some(of.as_ref()?.found.clone());
+            self.faces = self.contacts.iter().map(found).collect();
         }
         changes
     }
 }
 
 impl Followed {
-    fn look(&mut self, contact: &Contact, places: &Places, gaps: &[f64]) {
+    /// Looks for the faces of the points of this rank, and tells of those where others than before are found.
+    fn look(
+        &mut self,
+        contact: &Contact,
+        places: &Places,
+        (gaps, ranks): (&[f64], &Ranks),
+        told: &mut Vec<f64>,
+    ) {
         self.before += self.since;
         self.since = 0.0;
         self.motion = (PART * SQRT_2 * self.most).max(STEPS * self.last);
-        let [least, reach] =
-            [LEAST, ASSUMED].map(|part| contact.reach(part * self.last, self.most));
+        let reaches = [LEAST, ASSUMED].map(|part| contact.reach(part * self.last, self.most));
+        let [least, reach] = reaches;
         if !(least..=ASSUMED * reach).contains(&self.reach) {
             if reach > self.reach {
                 self.wakes.fill(f64::NEG_INFINITY);
@@ -154,23 +172,41 @@ impl Followed {
             self.reach = reach;
         }
         let until = self.before + self.motion;
-        let wakes = self.wakes.iter().zip(0..);
-        let due: Vec<u32> = wakes
-            .filter(|(wake, _)| **wake <= until)
-            .map(|(_, point)| point)
-            .collect();
+        // neighbours are with all ranks, so that each has as much to look for
+        let own = (0..contact.points.len()).skip(ranks.rank());
+        let own = own.step_by(ranks.count());
+        let due = own.filter(|&point| self.wakes[point] <= until);
+        let due: Vec<u32> = due.map(|point| point as u32).collect();
         let inside = |point: usize| gaps[point] < 0.0;
         let reach = [self.reach, self.most, self.motion];
         let at = (places, self.before);
         let found = contact.in_reach(at, &mut self.search, reach, (&due, inside));
         for (point, found) in due.into_iter().zip(found) {
-            let point = point as usize;
-            self.wakes[point] = match found.faces.is_empty() {
+            let at = point as usize;
+            self.wakes[at] = match found.faces.is_empty() {
                 true => self.before + found.clearance,
                 false => f64::NEG_INFINITY,
             };
-            self.found[point] = found.faces;
+            if self.found[at] != found.faces {
+                told.extend([f64::from(point), found.faces.len() as f64]);
+                told.extend(found.faces.iter().map(|&face| f64::from(face)));
+            }
         }
+    }
+
+    /// Takes what a rank has told of; whether there is any face that is not `known`.
+    fn take(&mut self, mut told: &[f64], known: Option<&Vec<Vec<u32>>>) -> bool {
+        let mut changes = false;
+        while let [point, count, rest @ ..] = told {
+            let (faces, rest) = rest.split_at(*count as usize);
+            told = rest;
+            let (point, found) = (*point as usize, faces.iter().map(|face| *face as u32));
+            self.found[point].clear();
+            self.found[point].extend(found);
+            let known = known.map_or(&[][..], |known| &known[point]);
+            changes |= !self.found[point].iter().all(|face| known.contains(face));
+        }
+        changes
     }
 }
 

@@ -105,7 +105,7 @@ impl Shared {
             spread: spread::Spread::default(),
             elements,
         };
-        shared.in_reach.look(system, state);
+        shared.in_reach.look(system, state, ranks);
         shared.find_homes(system);
         let mut border = vec![false; system.x.len()];
         let shared_later = contact_nodes(system, |contact| shared.in_reach.has(contact));
@@ -149,7 +149,7 @@ impl Shared {
     /// ask together.
     pub(crate) fn look_for_faces(&mut self, system: &System, state: &mut State) -> bool {
         self.spread.give_places(&self.ranks, system.dim, state);
-        if !self.in_reach.look(system, state) {
+        if !self.in_reach.look(system, state, &self.ranks) {
             return false;
         }
         self.spread.give(&self.ranks, system.dim, state);
