@@ -415,7 +415,7 @@ fn compare_halves(
     let (mut random, mut whole, mut all) = (Random(3), Search::default(), Pairing::default());
     let mut gaps = vec![1.0; contact.points.len()];
     let (mut near_points, mut kept_faces, mut looks, mut rested) = (0, 0, 0, 0);
-    let mut lists = vec![Vec::new(); contact.points.len()];
+    let mut lists: Vec<Vec<u32>> = vec![Vec::new(); contact.points.len()];
     let (mut wakes, mut travelled) = (vec![f64::NEG_INFINITY; lists.len()], 0.0);
     let mut halves: Vec<(Contact, Vec<u32>, Search)> = Vec::new();
     let parts = 8;
@@ -452,7 +452,7 @@ fn compare_halves(
                     } else {
                         f64::NEG_INFINITY
                     };
-                lists[k as usize] = found.faces;
+                lists[k as usize] = found.faces.into_iter().map(|(face, _)| face).collect();
             }
             rested += (contact.points.len() - due.len()) as u32;
             let half = |side: bool| {

@@ -12,8 +12,8 @@ use crate::{Contact, Places, Search, Target};
 /// What a point may touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InReach {
-    /// Faces of the target, by their numbers, ascending.
-    pub faces: Vec<u32>,
+    /// Faces of the target, by their numbers, ascending, each with how far nodes may move before it may be touched, m.
+    pub faces: Vec<(u32, f64)>,
     /// How far nodes may move before there is any, m; zero where there is.
     pub clearance: f64,
 }
@@ -61,9 +61,11 @@ impl Contact {
                 let all = view.map_or(f64::INFINITY, |view| view.reach());
                 limit = limit.max(found.map_or(all, |(foot, _)| foot.distance));
             }
-            let mut found = InReach::default();
             let of = (view, &x);
-            tree.in_reach((places, faces), of, [limit, motion], &mut found.faces);
+            let mut found = InReach {
+                faces: tree.in_reach((places, faces), of, [limit, motion]),
+                clearance: 0.0,
+            };
             if found.faces.is_empty() {
                 found.clearance = tree
                     .rest_of((places, faces), of, [limit, self.limit(k, most)])

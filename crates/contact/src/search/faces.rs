@@ -323,25 +323,25 @@ impl FaceTree {
         found.map_or(most, |(_, rest)| rest.max(0.0))
     }
 
-    /// Faces that may come into view within the `limit` (m) of a place while nodes move by less than `motion` (m), ascending, into `found`, which
-    /// is cleared first.
+    /// Faces that may come into view within the `limit` (m) of a place while nodes move by less than `motion` (m), ascending, each with how far
+    /// they may move before it does, m.
     pub fn in_reach(
         &self,
         target: (&Places, &[Face]),
         (view, x): (Option<View>, &[f64; 3]),
         [limit, motion]: [f64; 2],
-        found: &mut Vec<u32>,
-    ) {
-        found.clear();
+    ) -> Vec<(u32, f64)> {
         let Some(tree) = &self.tree else {
-            return;
+            return Vec::new();
         };
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let around = limit + 2.0 * motion + self.moved + tree.rounding(&there);
-        tree.near(&there, around, found);
+        let mut near = Vec::new();
+        tree.near(&there, around, &mut near);
         let outlook = Outlook::new(view, target.0);
         let rest = |item: u32| self.rest_from(target, (&outlook, x), item, [limit, motion]);
-        found.retain(|&item| rest(item) < motion);
+        let faces = near.into_iter().map(|item| (item, rest(item).max(0.0)));
+        faces.filter(|(_, rest)| *rest < motion).collect()
     }
 
     /// The most that nodes may move, m, before a face may come into view within the `limit` (m) of a place; that or less where it

@@ -40,12 +40,18 @@ pub(crate) struct Halo {
 /// Ranks of the elements of each body.
 pub(crate) type Parts = [Vec<u32>];
 
-impl Halo {
-    /// Of a rank. `in_reach`: the faces that points may touch.
-    pub(crate) fn new(system: &System, (parts, in_reach): (&Parts, &Faces), rank: usize) -> Halo {
-        let nodes = system.x.len();
-        // the rank of the first element at a node, and the others that have some
-        let mut first = vec![u32::MAX; nodes];
+/// Ranks whose elements have each node.
+#[derive(Debug, Default)]
+pub(crate) struct AtNodes {
+    /// That of the first element; the largest number of nodes without any.
+    first: Vec<u32>,
+    /// Nodes with each further one, ascending.
+    further: Vec<[u32; 2]>,
+}
+
+impl AtNodes {
+    pub(crate) fn new(system: &System, parts: &Parts) -> AtNodes {
+        let mut first = vec![u32::MAX; system.x.len()];
         let mut further: Vec<[u32; 2]> = Vec::new();
         for (body, parts) in system.bodies.iter().zip(parts) {
             let mut parts = parts.iter();
@@ -63,8 +69,13 @@ impl Halo {
         }
         further.sort_unstable();
         further.dedup();
-        let mut owner = first.clone();
-        for [node, part] in &further {
+        AtNodes { first, further }
+    }
+
+    /// The owner of each node.
+    fn owners(&self) -> Vec<u32> {
+        let mut owner = self.first.clone();
+        for [node, part] in &self.further {
             let own = &mut owner[*node as usize];
             *own = (*own).min(*part);
         }
@@ -72,13 +83,26 @@ impl Halo {
         for owner in owner.iter_mut().filter(|owner| **owner == u32::MAX) {
             *owner = 0;
         }
+        owner
+    }
+}
+
+impl Halo {
+    /// Of a rank. `in_reach`: the faces that points may touch.
+    pub(crate) fn new(
+        system: &System,
+        (elements, in_reach): (&AtNodes, &Faces),
+        rank: usize,
+    ) -> Halo {
+        let AtNodes { first, further } = elements;
+        let owner = elements.owners();
         let mut halo = Halo {
             homes: Homes::new(system, &owner, in_reach),
             owner,
             ..Halo::default()
         };
         let (mut further, mut have) = (&further[..], Vec::new());
-        for node in 0..nodes as u32 {
+        for node in 0..first.len() as u32 {
             have.clear();
             have.extend(Some(first[node as usize]).filter(|rank| *rank != u32::MAX));
             while let Some(([_, part], rest)) = further.split_first().filter(|(f, _)| f[0] == node)

@@ -15,6 +15,9 @@ use crate::system::System;
 /// How far nodes may move, over the largest distance at which anything is looked at.
 const PART: f64 = 0.1;
 
+/// Motions up to which faces are taken to be in reach once homes are found anew, so that they stay for longer.
+const AHEAD: f64 = 2.0;
+
 /// Steps of a motion as large as that of the last one that shall fit.
 const STEPS: f64 = 4.0;
 
@@ -46,8 +49,9 @@ struct Followed {
     before: f64,
     since: f64,
     last: f64,
-    /// Of each point the faces that were found last, and the bound of the motion up to which it touches nothing without any, m.
-    found: Vec<Vec<u32>>,
+    /// Of each point the faces that were found last, those that it may touch before the next look as they are and others by their complement,
+    /// and the bound of the motion up to which it touches nothing without any, m.
+    found: Vec<Vec<i32>>,
     wakes: Vec<f64>,
 }
 
@@ -144,7 +148,7 @@ impl InReach {
             }
         }
         if changes {
-            let found = |of: &Option<Followed>| Some(of.as_ref()?.found.clone());
+            let found = |of: &Option<Followed>| Some(of.as_ref()?.faces());
             self.faces = self.contacts.iter().map(found).collect();
         }
         changes
@@ -178,7 +182,7 @@ impl Followed {
         let due = own.filter(|&point| self.wakes[point] <= until);
         let due: Vec<u32> = due.map(|point| point as u32).collect();
         let inside = |point: usize| gaps[point] < 0.0;
-        let reach = [self.reach, self.most, self.motion];
+        let reach = [self.reach, self.most, AHEAD * self.motion];
         let at = (places, self.before);
         let found = contact.in_reach(at, &mut self.search, reach, (&due, inside));
         for (point, found) in due.into_iter().zip(found) {
@@ -187,24 +191,37 @@ impl Followed {
                 true => self.before + found.clearance,
                 false => f64::NEG_INFINITY,
             };
-            if self.found[at] != found.faces {
+            let faces = found.faces.iter();
+            let faces = faces.map(|&(face, rest)| match rest < self.motion {
+                true => face as i32,
+                false => !(face as i32),
+            });
+            if !faces.clone().eq(self.found[at].iter().copied()) {
                 told.extend([f64::from(point), found.faces.len() as f64]);
-                told.extend(found.faces.iter().map(|&face| f64::from(face)));
+                told.extend(faces.map(f64::from));
             }
         }
     }
 
-    /// Takes what a rank has told of; whether there is any face that is not `known`.
+    /// The faces of each point.
+    fn faces(&self) -> Vec<Vec<u32>> {
+        let number = |face: &i32| face.max(&!*face).unsigned_abs();
+        let of = |found: &Vec<i32>| found.iter().map(number).collect();
+        self.found.iter().map(of).collect()
+    }
+
+    /// Takes what a rank has told of; whether any face may be touched before the next look that is not `known`.
     fn take(&mut self, mut told: &[f64], known: Option<&Vec<Vec<u32>>>) -> bool {
         let mut changes = false;
         while let [point, count, rest @ ..] = told {
             let (faces, rest) = rest.split_at(*count as usize);
             told = rest;
-            let (point, found) = (*point as usize, faces.iter().map(|face| *face as u32));
+            let (point, found) = (*point as usize, faces.iter().map(|face| *face as i32));
             self.found[point].clear();
             self.found[point].extend(found);
             let known = known.map_or(&[][..], |known| &known[point]);
-            changes |= !self.found[point].iter().all(|face| known.contains(face));
+            let mut soon = self.found[point].iter().filter(|face| **face >= 0);
+            changes |= soon.any(|face| !known.contains(&(*face as u32)));
         }
         changes
     }

@@ -26,7 +26,7 @@ use crate::resultant::Resultant;
 use crate::state::State;
 use crate::system::{Motion, System};
 use crate::update::Sums;
-use halo::{Halo, contact_nodes, messages, pack, unpack};
+use halo::{AtNodes, Halo, contact_nodes, messages, pack, unpack};
 pub(crate) use homes::{Own, Part};
 pub(crate) use in_reach::InReach;
 use parts::Partition;
@@ -44,8 +44,7 @@ pub(crate) struct Shared {
     pub(crate) homes: usize,
     /// The most points of this rank so far that might touch something.
     pub(crate) looked: usize,
-    /// The rank of each element of each body.
-    elements: Vec<Vec<u32>>,
+    elements: AtNodes,
     watched: Watched,
     /// Of each body the elements at nodes that others may have too, and the others.
     bodies: Vec<[Share; 2]>,
@@ -103,7 +102,7 @@ impl Shared {
             looks: looks::SharedLooks::new(&elements, ranks.count()),
             points: contacts::SharedPoints::default(),
             spread: spread::Spread::default(),
-            elements,
+            elements: AtNodes::new(system, &elements),
         };
         shared.in_reach.look(system, state, ranks);
         shared.find_homes(system);
@@ -124,7 +123,7 @@ impl Shared {
             body.as_solid()
                 .map(|solid| lists.map(|list| solid.share(list)))
         };
-        let bodies = system.bodies.iter().zip(&shared.elements);
+        let bodies = system.bodies.iter().zip(&elements);
         shared.bodies = bodies.filter_map(shares).collect();
         shared
     }
@@ -152,8 +151,13 @@ impl Shared {
         if !self.in_reach.look(system, state, &self.ranks) {
             return false;
         }
-        self.spread.give(&self.ranks, system.dim, state);
+        let (last, before) = (
+            std::mem::take(&mut self.halo),
+            std::mem::take(&mut self.spread),
+        );
         self.find_homes(system);
+        let homes = [&last.homes, &self.halo.homes];
+        before.give((&self.ranks, system.dim), homes, state);
         true
     }
 

@@ -6,6 +6,7 @@ use carom_ranks::Ranks;
 
 use super::contacts::{WHOLE, of_point};
 use super::halo::{Halo, contact_nodes};
+use super::homes::Homes;
 use super::in_reach::InReach;
 use crate::state::State;
 use crate::system::{Motion, System};
@@ -56,18 +57,41 @@ impl Spread {
         });
     }
 
-    /// Gives all ranks the motion of these nodes and the states of these points.
-    pub(super) fn give(&self, ranks: &Ranks, dim: usize, state: &mut State) {
-        let of_nodes = (&self.nodes[..], &self.of_nodes[..], VECTORS * dim);
+    /// Gives all ranks the motion of the nodes and the states of the points that have other homes in `next`.
+    pub(super) fn give(
+        &self,
+        (ranks, dim): (&Ranks, usize),
+        [last, next]: [&Homes; 2],
+        state: &mut State,
+    ) {
+        let moves = |node: u32| last.of_node(node as usize) != next.of_node(node as usize);
+        let (nodes, starts) = some((&self.nodes, &self.of_nodes), moves);
         let motion = &mut state.motion;
-        give(ranks, of_nodes, &mut |node, visit| {
-            of_node(motion, dim, node, visit)
-        });
-        let of_points = (&self.points[..], &self.of_points[..], WHOLE);
-        give(ranks, of_points, &mut |point, visit| {
+        give(
+            ranks,
+            (&nodes, &starts, VECTORS * dim),
+            &mut |node, visit| of_node(motion, dim, node, visit),
+        );
+        let moves = |point: u32| last.of_point[point as usize] != next.of_point[point as usize];
+        let (points, starts) = some((&self.points, &self.of_points), moves);
+        give(ranks, (&points, &starts, WHOLE), &mut |point, visit| {
             of_point(state, point, true, visit)
         });
     }
+}
+
+/// Some of the things of ranks, with where those of each begin.
+fn some(
+    (things, starts): (&[u32], &[usize]),
+    which: impl Fn(u32) -> bool,
+) -> (Vec<u32>, Vec<usize>) {
+    let (mut some, mut of_some) = (Vec::new(), vec![0]);
+    for ends in starts.windows(2) {
+        let own = things[ends[0]..ends[1]].iter().copied();
+        some.extend(own.filter(|&thing| which(thing)));
+        of_some.push(some.len());
+    }
+    (some, of_some)
 }
 
 /// Gives all ranks `count` numbers of each of these things.
