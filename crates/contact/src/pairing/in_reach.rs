@@ -9,6 +9,9 @@ use crate::search::faces::{Question, Scratch};
 use crate::search::kept::Kept;
 use crate::{Contact, Places, Search, Target};
 
+/// Distance up to which clearances are told, over the largest at which anything is looked at: further, a look costs more than it saves.
+const FARTHER: f64 = 2.0;
+
 /// What a point may touch.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InReach {
@@ -68,7 +71,7 @@ impl Contact {
             };
             if found.faces.is_empty() {
                 found.clearance = tree
-                    .rest_of((places, faces), of, [limit, self.limit(k, most)])
+                    .rest_of((places, faces), of, [limit, FARTHER * self.limit(k, most)])
                     .max(motion);
             }
             found

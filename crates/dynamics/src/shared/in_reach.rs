@@ -13,10 +13,10 @@ use crate::state::State;
 use crate::system::System;
 
 /// How far nodes may move, over the largest distance at which anything is looked at.
-const PART: f64 = 0.1;
+const PART: f64 = 0.13;
 
 /// Motions up to which faces are taken to be in reach once homes are found anew, so that they stay for longer.
-const AHEAD: f64 = 2.0;
+const AHEAD: f64 = 1.5;
 
 /// Steps of a motion as large as that of the last one that shall fit.
 const STEPS: f64 = 4.0;
