@@ -164,6 +164,16 @@ mod tests {
     }
 
     #[test]
+    fn numbers_of_all_ranks_reach_each_however_many_they_are() {
+        let found = on_all(3, |ranks| {
+            let own = vec![ranks.rank() as f64; [2, 0, 1][ranks.rank()]];
+            ranks.gather_all(&own)
+        });
+        assert_eq!(found, [[0.0, 0.0, 2.0]; 3]);
+        assert_eq!(Ranks::alone().gather_all(&[4.0]), [4.0]);
+    }
+
+    #[test]
     fn messages_arrive_and_their_bytes_are_counted() {
         let found = on_all(2, |ranks| {
             let with = 1 - ranks.rank();

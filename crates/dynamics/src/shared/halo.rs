@@ -43,7 +43,7 @@ pub(crate) type Parts = [Vec<u32>];
 /// Ranks whose elements have each node.
 #[derive(Debug, Default)]
 pub(crate) struct AtNodes {
-    /// That of the first element; the largest number of nodes without any.
+    /// That of the first element; `u32::MAX` for nodes without any.
     first: Vec<u32>,
     /// Nodes with each further one, ascending.
     further: Vec<[u32; 2]>,

@@ -93,40 +93,54 @@ impl Homes {
             own.map(|(_, point)| point).collect::<Vec<u32>>()
         };
         let of_contact = |(number, in_reach): (usize, &Option<Vec<Vec<u32>>>)| {
-            let contact = &system.contacts[number];
-            let range = system.points_of(number);
+            let (contact, range) = (&system.contacts[number], system.points_of(number));
             let points = own(range.clone());
-            let part = |looked: Vec<u32>, faces: Option<Vec<u32>>, nodes: Vec<u32>| {
-                Own::Some(Part {
-                    looked,
-                    faces: faces.map(in_order),
-                    nodes: in_order(nodes),
-                    points: points.clone(),
-                })
-            };
             match in_reach {
-                Some(in_reach) => {
-                    let faces_of = |point: u32| &in_reach[point as usize];
-                    let looked = points.iter().copied();
-                    let looked: Vec<u32> = looked.filter(|&p| !faces_of(p).is_empty()).collect();
-                    let faces = looked
-                        .iter()
-                        .flat_map(|&point| faces_of(point).iter().copied());
-                    let faces = faces.collect();
-                    let mut nodes = contact.nodes().0;
-                    nodes.retain(|&node| knows(node));
-                    part(looked, Some(faces), nodes)
-                }
+                Some(in_reach) => Own::Some(Part::in_reach(contact, points, in_reach, &knows)),
                 None if points.len() == range.len() => Own::All,
-                None => {
-                    let own = points.iter().map(|&point| &contact.points[point as usize]);
-                    let carriers = own.flat_map(|point| point.carriers());
-                    let nodes = carriers.map(|(node, _)| node).collect();
-                    part(points.clone(), None, nodes)
-                }
+                None => Own::Some(Part::of_points(contact, points)),
             }
         };
         in_reach.iter().enumerate().map(of_contact).collect()
+    }
+}
+
+impl Part {
+    /// Points with the faces that they may touch. `knows`: whether the rank computes the motion of a node.
+    fn in_reach(
+        contact: &Contact,
+        points: Vec<u32>,
+        in_reach: &[Vec<u32>],
+        knows: impl Fn(u32) -> bool,
+    ) -> Part {
+        let faces_of = |point: u32| &in_reach[point as usize];
+        let looked = points.iter().copied();
+        let looked: Vec<u32> = looked
+            .filter(|&point| !faces_of(point).is_empty())
+            .collect();
+        let faces = looked
+            .iter()
+            .flat_map(|&point| faces_of(point).iter().copied());
+        let mut nodes = contact.nodes().0;
+        nodes.retain(|&node| knows(node));
+        Part {
+            faces: Some(in_order(faces.collect())),
+            looked,
+            nodes,
+            points,
+        }
+    }
+
+    /// Points that are looked at whatever the others do.
+    fn of_points(contact: &Contact, points: Vec<u32>) -> Part {
+        let own = points.iter().map(|&point| &contact.points[point as usize]);
+        let carriers = own.flat_map(|point| point.carriers());
+        Part {
+            nodes: in_order(carriers.map(|(node, _)| node).collect()),
+            looked: points.clone(),
+            faces: None,
+            points,
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which faces the points of contacts between surfaces may touch before nodes have moved far, and when that has to be found anew.
 //!
-//! It is found from the places of all nodes of such a contact, which ranks give each other for it, by each for some of the points. Points whose faces have
-//! no node in common are then of different [families](super::homes), until nodes have moved by what was assumed.
+//! It is found from the places of all nodes of such a contact, which ranks give each other for it, by each rank for some of the points. Points whose
+//! faces have no node in common are then of different [families](super::homes), until nodes have moved by what was assumed.
 
 use std::f64::consts::SQRT_2;
 
@@ -12,10 +12,11 @@ use crate::of_contact::OfContact;
 use crate::state::State;
 use crate::system::System;
 
-/// How far nodes may move, over the largest distance at which anything is looked at.
+/// How far nodes may move before faces are looked for again, over the largest distance at which anything is looked at: with more, points before edges of
+/// walls are near the other side of the edge.
 const PART: f64 = 0.13;
 
-/// Motions up to which faces are taken to be in reach once homes are found anew, so that they stay for longer.
+/// How far they may move before the faces are in reach that homes are found with, over that: homes stay for some looks.
 const AHEAD: f64 = 1.5;
 
 /// Steps of a motion as large as that of the last one that shall fit.
