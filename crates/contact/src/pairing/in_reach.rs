@@ -84,7 +84,7 @@ impl Contact {
         let Target::Surface(faces) = &self.target else {
             return self.clone();
         };
-        let some = kept.iter().map(|&face| faces[face as usize].clone());
+        let some = kept.iter().map(|&face| faces[face as usize]);
         let sight = self.sight.as_ref().map(|sight| sight.with_some_faces(kept));
         Contact {
             target: Target::Surface(some.collect()),

@@ -11,6 +11,9 @@ use super::in_reach::InReach;
 use crate::state::State;
 use crate::system::{Motion, System};
 
+/// Who is shown the numbers of a node or a point, and may change them.
+type Visit<'a> = dyn FnMut(&mut f64) + 'a;
+
 /// Vectors of a motion that a rank has to have where it begins to compute a node.
 const VECTORS: usize = 5;
 
@@ -98,7 +101,7 @@ fn some(
 fn give(
     ranks: &Ranks,
     (things, starts, count): (&[u32], &[usize], usize),
-    each: &mut dyn FnMut(usize, &mut dyn FnMut(&mut f64)),
+    each: &mut dyn FnMut(usize, &mut Visit),
 ) {
     let mut values = vec![0.0; count * things.len()];
     let own = starts[ranks.rank()]..starts[ranks.rank() + 1];
@@ -123,7 +126,7 @@ fn give(
 }
 
 /// Visits what a motion has of a node.
-fn of_node(motion: &mut Motion, dim: usize, node: usize, visit: &mut dyn FnMut(&mut f64)) {
+fn of_node(motion: &mut Motion, dim: usize, node: usize, visit: &mut Visit) {
     let Motion {
         u,
         v,
