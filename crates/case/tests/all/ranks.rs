@@ -191,7 +191,7 @@ fn apart(one: &[f64], other: &[f64]) -> f64 {
 
 /// That two runs have the same motion, forces, histories and balances. Sums of forces are in another order, and rounding grows by some ten
 /// times in each impact of a point: 1e-9 is a million roundings.
-fn assert_same(name: &str, one: &State, other: &State) {
+pub fn assert_same(name: &str, one: &State, other: &State) {
     const TOLERANCE: f64 = 1e-9;
     assert_eq!(one.step, other.step, "{name}");
     let (a, b) = (&one.motion, &other.motion);

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use carom_dynamics::{Driver, Watched};
 
-use crate::ranks::{built, compare_on_ranks, last, on_all, run_alone};
+use crate::ranks::{
+    assert_same, built, compare_on_ranks, last, on_all, resume_on, run_alone, run_on,
+};
 
 /// A block between a floor that slides, with friction, a ball, and a wall that crushes; another block that strikes its corner; and a
 /// probe of the pressure on the floor.
@@ -137,4 +139,19 @@ fn one_contact_at_two_places_is_shared_out_and_moves_from_rank_to_rank() {
     assert_eq!(begin.collect::<Vec<_>>(), [true, false, true]);
     assert!(shares[1].iter().any(|share| share.looked_points > 0));
     assert!(shares[1][40].contact_looks > 3);
+}
+
+#[test]
+fn contacts_at_two_places_go_on_from_a_checkpoint_on_other_ranks() {
+    let folder = tempfile::tempdir().unwrap();
+    let [alone, cut] = ["alone", "cut"].map(|name| folder.path().join(name));
+    run_alone(ENDS, &alone);
+    run_on(4, ENDS, &cut, 150);
+    let state = last(ENDS, &cut);
+    assert_eq!(state.step, 150);
+    // in the midst of the contacts
+    let closed = state.interface.force.iter().filter(|force| **force > 0.0);
+    assert!(closed.count() > 3);
+    resume_on(3, &cut);
+    assert_same("resumed", &last(ENDS, &alone), &last(ENDS, &cut));
 }
