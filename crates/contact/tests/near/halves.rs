@@ -14,15 +14,6 @@ fn compare_halves(
     let unknowns = Unknowns::translations(3, scene.x.len());
     let mut u = vec![0.0; 3 * scene.x.len()];
     let mut since = f64::INFINITY;
-    fn places<'a>(unknowns: &'a Unknowns, scene: &'a Scene, u: &'a [f64]) -> Places<'a> {
-        Places {
-            unknowns,
-            time: 0.0,
-            x: &scene.x,
-            u,
-            frames: Frames::default(),
-        }
-    }
     let Target::Surface(faces) = &contact.target else {
         unreachable!()
     };

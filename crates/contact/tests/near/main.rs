@@ -98,6 +98,16 @@ fn displacement(scene: &Scene, first: usize, step: f64, random: &mut Random, u: 
     }
 }
 
+fn places<'a>(unknowns: &'a Unknowns, scene: &'a Scene, u: &'a [f64]) -> Places<'a> {
+    Places {
+        unknowns,
+        time: 0.0,
+        x: &scene.x,
+        u,
+        frames: Frames::default(),
+    }
+}
+
 /// How the search is treated.
 #[derive(Clone, Copy, Default)]
 struct Way {
@@ -398,13 +408,7 @@ fn sheets_that_fly_together_are_looked_at_once() {
     near.open_all(std::slice::from_ref(&contact), 3);
     for step in 0..20 {
         let u = vec![f64::from(step); 3 * scene.x.len()];
-        let places = Places {
-            unknowns: &unknowns,
-            time: 0.0,
-            x: &scene.x,
-            u: &u,
-            frames: Frames::default(),
-        };
+        let places = places(&unknowns, &scene, &u);
         near.reopen();
         let given = Near {
             first: 0,
@@ -445,13 +449,7 @@ fn near_points_have_the_same_bits_on_any_number_of_threads() {
                     &mut random,
                     &mut u,
                 );
-                let places = Places {
-                    unknowns: &unknowns,
-                    time: 0.0,
-                    x: &scene.x,
-                    u: &u,
-                    frames: Frames::default(),
-                };
+                let places = places(&unknowns, &scene, &u);
                 near.reopen();
                 let given = Near {
                     first: 0,
