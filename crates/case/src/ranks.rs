@@ -132,7 +132,7 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
         own.nodes as u64,
         own.points as u64,
         own.looked_points as u64,
-        own.contact_looks as u64,
+        own.contact_shares as u64,
         own.halo_bytes,
         ranks.sent_bytes(),
     ];
@@ -143,7 +143,7 @@ fn busiest(ranks: &Ranks, run: &Stepping) -> RankShare {
         nodes: most[1] as usize,
         points: most[2] as usize,
         looked_points: most[3] as usize,
-        contact_looks: most[4] as usize,
+        contact_shares: most[4] as usize,
         halo_bytes: most[5] as u64,
         sent_bytes: most[6] as u64,
         shared_nodes: own.shared_nodes,

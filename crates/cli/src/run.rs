@@ -239,7 +239,7 @@ fn busiest(share: &RankShare) -> String {
         nodes,
         points,
         looked_points,
-        contact_looks,
+        contact_shares,
         halo_bytes,
         sent_bytes,
         shared_nodes: shared,
@@ -262,9 +262,9 @@ fn busiest(share: &RankShare) -> String {
         }
         (None, _) => format!("planes ({} shared nodes)", shared.by_planes),
     };
-    let looked = match looked_points < points || *contact_looks > 1 {
+    let looked = match looked_points < points || *contact_shares > 1 {
         true => format!(
-            " (at most {looked_points} near something at a time, shared out {contact_looks} times)"
+            " (at most {looked_points} near something at a time, shared out {contact_shares} times)"
         ),
         false => String::new(),
     };

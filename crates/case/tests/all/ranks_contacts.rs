@@ -138,7 +138,7 @@ fn one_contact_at_two_places_is_shared_out_and_moves_from_rank_to_rank() {
     let begin = shares.iter().map(|share| share[0].looked_points > 0);
     assert_eq!(begin.collect::<Vec<_>>(), [true, false, true]);
     assert!(shares[1].iter().any(|share| share.looked_points > 0));
-    assert!(shares[1][40].contact_looks > 3);
+    assert!(shares[1][40].contact_shares > 3);
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub struct RankShare {
     /// The most of them so far that might touch something at a time.
     pub looked_points: usize,
     /// How often contacts of surfaces have been shared out.
-    pub contact_looks: usize,
+    pub contact_shares: usize,
     /// Bytes that it sends in each step, by the count of these nodes.
     pub halo_bytes: u64,
     /// Bytes that it has sent so far: with what the first rank is given where impacts begin or end, and where somebody looks.
@@ -108,7 +108,7 @@ impl Driver {
             nodes: shared.halo.present.len(),
             points: self.active.own_points(),
             looked_points: shared.looked,
-            contact_looks: shared.homes,
+            contact_shares: shared.found_homes,
             halo_bytes: shared.halo.bytes(self.system.dim),
             sent_bytes: shared.ranks.sent_bytes(),
             shared_nodes: shared.shared_nodes,

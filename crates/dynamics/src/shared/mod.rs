@@ -41,7 +41,7 @@ pub(crate) struct Shared {
     /// What is known of the faces that points may touch.
     pub(crate) in_reach: InReach,
     /// How often homes have been found.
-    pub(crate) homes: usize,
+    pub(crate) found_homes: usize,
     /// The most points of this rank so far that might touch something.
     pub(crate) looked: usize,
     elements: AtNodes,
@@ -87,7 +87,7 @@ impl Shared {
             shared_nodes: partition.shared,
             halo: Halo::default(),
             in_reach,
-            homes: 0,
+            found_homes: 0,
             looked: 0,
             watched: watched.clone(),
             bodies: Vec::new(),
@@ -141,11 +141,11 @@ impl Shared {
         self.spread = spread::Spread::new(system, &self.in_reach, &halo, self.ranks.count());
         self.whole.take(system, (&halo, rank), &self.watched.nodes);
         self.halo = halo;
-        self.homes += 1;
+        self.found_homes += 1;
     }
 
-    /// Looks for the faces that points may touch; whether other ranks have contact points now, and their nodes, which all ranks know then. All ranks
-    /// ask together.
+    /// Looks for the faces that points may touch; whether contact points have other homes now, which know the motion of their nodes then. All
+    /// ranks ask together.
     pub(crate) fn look_for_faces(&mut self, system: &System, state: &mut State) -> bool {
         self.spread.give_places(&self.ranks, system.dim, state);
         if !self.in_reach.look(system, state, &self.ranks) {
