@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use carom_algebra::unknowns::Unknowns;
 use carom_mesh::ElementId;
 
 use crate::block::{Block, chunk_length};
@@ -99,6 +100,24 @@ impl Solid {
             new: vec![0.0; length],
             scratch: Scratch::default(),
         }
+    }
+
+    /// The elements at these places as a body of a system that has their nodes alone. `number`: of the nodes there; `unknowns`: of that system.
+    pub fn part(
+        &self,
+        places: Vec<u32>,
+        number: impl Fn(u32) -> u32,
+        unknowns: &Unknowns,
+    ) -> Solid {
+        let mut part = self.share(places).solid;
+        for chunk in part.blocks.iter_mut().flat_map(|block| &mut block.chunks) {
+            for (node, first) in chunk.nodes.iter_mut().zip(&mut chunk.first) {
+                *node = number(*node);
+                *first = unknowns.first(*node) as u32;
+            }
+        }
+        part.gather = Gather::new(part.dim, &part.blocks);
+        part
     }
 
     /// Numbers that each element keeps from one step to the next, in the order of [`Solid::cells`], which is that of the history.
@@ -262,6 +281,7 @@ impl Solid {
             flowing: None,
             dim: self.dim,
             smallest: self.smallest,
+            most_nodes: self.most_nodes,
             viscosity: self.viscosity,
             added_mass: 0.0,
         }

@@ -110,6 +110,8 @@ pub struct Solid {
     pub(crate) flowing: Option<Flowing>,
     pub(crate) dim: usize,
     pub(crate) smallest: f64,
+    /// Nodes of the kind that has most of them, of the whole body.
+    pub(crate) most_nodes: usize,
     pub(crate) viscosity: Option<BulkViscosity>,
     /// Mass beyond that of the material, kg.
     pub(crate) added_mass: f64,
@@ -170,6 +172,7 @@ impl Solid {
             kinematics: spec.kinematics,
             material: spec.material,
             smallest: sizes.fold(f64::INFINITY, f64::min),
+            most_nodes: most_nodes(&blocks),
             viscosity: spec.viscosity,
             added_mass: 0.0,
             gather: Gather::new(mesh.dim, &blocks),
@@ -434,6 +437,12 @@ impl Solid {
             block.matrices(self.dim, stiffness, visit);
         }
     }
+}
+
+/// Nodes of the kind that has most of them.
+fn most_nodes(blocks: &[Block]) -> usize {
+    let nodes = blocks.iter().map(|block| block.kind.table().nodes);
+    nodes.max().unwrap_or(1)
 }
 
 fn check(mesh: &Mesh, spec: &BodySpec) -> Result<(), Error> {

@@ -85,10 +85,10 @@ fn timed(ranks: &Ranks, text: &str) -> Anyhow<[f64; 3]> {
     let told = |problems| format!("{problems:?}");
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).map_err(told)?;
-    let built = build(&case, &locator, &input).map_err(told)?;
+    let mut built = build(&case, &locator, &input).map_err(told)?;
     let folder = tempfile::tempdir()?;
     let mut clock = Clock::default();
-    let parts = (&input, &case, &built);
+    let parts = (&input, &case, &mut built);
     let done = run_on_ranks(ranks, parts, folder.path().join("run"), &mut clock, &|| {
         false
     })?;

@@ -17,13 +17,13 @@ use crate::schema::Case;
 use crate::stepping::Stepping;
 
 /// Runs a case on several ranks, each of which has built it: the first one writes the results folder, and has the end to tell. `progress` and
-/// `stop` count there alone.
+/// `stop` count there alone. Where ranks share the elements, `built` has the rank's part of the system then.
 ///
 /// # Errors
 /// As [`run`](crate::run()), on all ranks: where it happened on another one, with that rank.
 pub fn run_on_ranks(
     ranks: &Ranks,
-    (input, case, built): (&Input, &Case, &Built),
+    (input, case, built): (&Input, &Case, &mut Built),
     folder: PathBuf,
     progress: &mut dyn Observer,
     stop: &dyn Fn() -> bool,
@@ -31,6 +31,7 @@ pub fn run_on_ranks(
     let origin = Origin::of(input, case, &folder);
     let mut settings = settings((input, case, built), folder, &origin);
     let run = shared((ranks, built, &mut settings), None, &Costs::default())?;
+    let built = &*built;
     let results = |settings| Results::create(settings, Arc::clone(&built.system));
     let of = (ranks, built, settings);
     go_through(of, (run, march), (results, None), (progress, stop))
@@ -38,18 +39,16 @@ pub fn run_on_ranks(
 
 /// What takes the steps together with the other ranks, from the bytes of a state or from the start.
 pub(crate) fn shared(
-    (ranks, built, settings): (&Ranks, &Built, &mut Settings),
+    (ranks, built, settings): (&Ranks, &mut Built, &mut Settings),
     saved: Option<&[u8]>,
     costs: &Costs,
 ) -> Result<Stepping, Failed> {
-    let begun = Stepping::new(built, saved).and_then(|mut run| {
-        run.add_earlier(costs);
-        let watched = watched(settings, &built.system);
-        let watched = watched.map_err(|error| Error::Observer(Box::new(error)))?;
-        Ok((run, watched))
-    });
-    let (mut run, watched) = together(ranks, begun, Failed::Start)?;
-    together(ranks, run.share(ranks, &watched), Failed::Start)?;
+    let watched = watched(settings, &built.system);
+    let watched = watched.map_err(|error| Error::Observer(Box::new(error)));
+    let watched = together(ranks, watched, Failed::Start)?;
+    let run = Stepping::on_ranks(built, saved, ranks, watched);
+    let mut run = together(ranks, run, Failed::Start)?;
+    run.add_earlier(costs);
     settings.piece = run.piece(ranks);
     Ok(run)
 }

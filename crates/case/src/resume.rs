@@ -171,24 +171,34 @@ impl Resume {
         progress: &mut dyn Observer,
         stop: &dyn Fn() -> bool,
     ) -> Result<Option<Finished>, Failed> {
-        let origin = self.origin.of_the_rest(&self.input, &self.case);
-        let mut settings = settings((&self.input, &self.case, &self.built), self.path, &origin);
-        let state = Some(&self.checkpoint.state[..]);
-        let costs = self.checkpoint.costs()?;
-        let run = shared((ranks, &self.built, &mut settings), state, &costs)?;
-        let checkpoint = self.checkpoint;
-        let results = |settings| match self.folder {
-            Some(folder) => Results::resume(
-                folder,
-                &checkpoint,
-                settings,
-                Arc::clone(&self.built.system),
-            ),
+        let Resume {
+            input,
+            case,
+            mut built,
+            folder,
+            path,
+            mut checkpoint,
+            origin,
+            ..
+        } = self;
+        let origin = origin.of_the_rest(&input, &case);
+        let mut settings = settings((&input, &case, &built), path, &origin);
+        let costs = checkpoint.costs()?;
+        // another rank may be given its part of the state by the first one, and needs the whole no longer
+        let state = std::mem::take(&mut checkpoint.state);
+        let run = shared((ranks, &mut built, &mut settings), Some(&state), &costs)?;
+        if folder.is_some() {
+            checkpoint.state = state;
+        }
+        let results = |settings| match folder {
+            Some(folder) => {
+                Results::resume(folder, &checkpoint, settings, Arc::clone(&built.system))
+            }
             None => Err(Error::NoResults {
                 path: PathBuf::new(),
             }),
         };
-        let of = (ranks, &self.built, settings);
+        let of = (ranks, &built, settings);
         let begin = (results, Some(&*checkpoint));
         go_through(of, (run, go_on), begin, (progress, stop))
     }

@@ -40,16 +40,22 @@ impl Stepping {
         Ok(Stepping::One(Box::new(driver?)))
     }
 
-    /// Shares the run with other ranks; `watched`: what the first rank follows.
+    /// The same on one of several ranks; `watched`: what the first one follows. See [`Driver::on_ranks`].
     ///
     /// # Errors
-    /// As [`Driver::share`].
-    pub(crate) fn share(&mut self, ranks: &Ranks, watched: &Watched) -> Result<(), Error> {
-        match self {
-            Stepping::One(driver) => driver.share(ranks, watched),
-            // zones that step apart have factors, which ranks do not share
-            Stepping::Apart(_) => Ok(()),
+    /// As [`Driver::on_ranks`].
+    pub(crate) fn on_ranks(
+        built: &mut Built,
+        saved: Option<&[u8]>,
+        ranks: &Ranks,
+        watched: Watched,
+    ) -> Result<Stepping, Error> {
+        // zones that step apart have factors, which ranks do not share
+        if built.zoned.is_some() && built.apart {
+            return Stepping::new(built, saved);
         }
+        let driver = Driver::on_ranks(&mut built.system, saved, ranks, watched)?;
+        Ok(Stepping::One(Box::new(driver)))
     }
 
     /// What this rank has and sends; none of a run in one process.

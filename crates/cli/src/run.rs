@@ -41,7 +41,7 @@ pub struct Arguments {
 /// Runs a case; returns the exit code.
 pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
     let loaded = load(&arguments.case, &arguments.set);
-    let (input, case, built) = match all_have(ranks, loaded) {
+    let (input, case, mut built) = match all_have(ranks, loaded) {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
@@ -58,10 +58,13 @@ pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
         .unwrap_or_else(|| arguments.case.with_extension("carom"));
     let quiet = arguments.quiet || !ranks.is_first();
     let ended = until_stopped(built.end, quiet, |progress, stop| {
-        let case = (&input, &case, &built);
+        let folder = folder.clone();
         match ranks.count() {
-            1 => carom_case::run(case, folder.clone(), progress, stop).map(Some),
-            _ => carom_case::run_on_ranks(ranks, case, folder.clone(), progress, stop),
+            1 => carom_case::run((&input, &case, &built), folder, progress, stop).map(Some),
+            _ => {
+                let case = (&input, &case, &mut built);
+                carom_case::run_on_ranks(ranks, case, folder, progress, stop)
+            }
         }
     });
     end(ended, &folder, arguments.json)

@@ -131,6 +131,27 @@ impl Contact {
         }
     }
 
+    /// The contact with its nodes in other numbers, in the same order.
+    pub fn renumbered(&self, number: impl Fn(u32) -> u32) -> Contact {
+        let of_all = |faces: &[Face]| -> Vec<Face> {
+            let faces = faces.iter();
+            faces.map(|face| face.renumbered(&number)).collect()
+        };
+        let points = self.points.iter();
+        Contact {
+            name: self.name.clone(),
+            points: points.map(|point| point.renumbered(&number)).collect(),
+            mortar: self.mortar.as_ref().map(|mortar| mortar.with_faces(of_all(&mortar.faces))),
+            target: match &self.target {
+                Target::Surface(faces) => Target::Surface(of_all(faces)),
+                Target::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
+            },
+            sight: self.sight.as_ref().map(|sight| sight.renumbered(&number)),
+            offsets: self.offsets.clone(),
+            ..*self
+        }
+    }
+
     /// Whether the surface faces itself.
     pub fn faces_itself(&self) -> bool {
         self.sight.as_ref().is_some_and(Sight::is_of_itself)

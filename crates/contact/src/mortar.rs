@@ -75,6 +75,14 @@ impl Mortar {
         (mortar, points)
     }
 
+    /// The same with the faces in other numbers of nodes.
+    pub(crate) fn with_faces(&self, faces: Vec<Face>) -> Mortar {
+        Mortar {
+            faces,
+            ..self.clone()
+        }
+    }
+
     fn points(&self, x: &[[f64; 3]], nodes: &[u32]) -> Vec<Point> {
         let (mut areas, mut radii) = (vec![0.0; nodes.len()], vec![0.0_f64; nodes.len()]);
         for index in 0..self.faces.len() {

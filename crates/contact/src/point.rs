@@ -55,6 +55,14 @@ impl Point {
         }
     }
 
+    /// The point with its nodes in other numbers.
+    pub(crate) fn renumbered(mut self, number: impl Fn(u32) -> u32) -> Point {
+        for node in &mut self.nodes[..self.count] {
+            *node = number(*node);
+        }
+        self
+    }
+
     /// Its node, if it is one.
     pub(crate) fn as_node(&self) -> Option<u32> {
         (self.count == 1).then_some(self.nodes[0])

@@ -116,7 +116,7 @@ impl Sight {
             beside = along::near(points, target, x, NEAR * 2.0 * widest);
         }
         let itself = !beside.numbers.is_empty();
-        let diagonal = |face: &Face| diagonal(&bounds(face, x));
+        let diagonal = |face: &Face| bounds(face, x).diagonal();
         // a point without faces sees nothing
         let size = |k: usize| {
             let sizes = around.of(k).iter();
@@ -148,6 +148,16 @@ impl Sight {
     pub fn with_parts(self, parts: &Parts) -> Sight {
         let parts = (!parts.apart.is_empty()).then(|| parts.clone());
         Sight { parts, ..self }
+    }
+
+    /// The views with nodes in other numbers.
+    pub(crate) fn renumbered(&self, number: impl Fn(u32) -> u32) -> Sight {
+        let faces = self.faces.iter();
+        Sight {
+            faces: faces.map(|face| face.renumbered(&number)).collect(),
+            sides: self.sides.as_ref().map(|sides| sides.renumbered(&number)),
+            ..self.clone()
+        }
     }
 
     /// The views of some faces of the target alone, by their numbers, ascending.
@@ -235,7 +245,7 @@ impl Sight {
         let diagonals: Vec<f64> = self
             .faces
             .iter()
-            .map(|face| diagonal(&bounds(face, x)))
+            .map(|face| bounds(face, x).diagonal())
             .collect();
         let surface = (&self.faces[..], &normals[..], &diagonals[..]);
         self.sides = Some(Sides::new(&nodes, &self.around, surface));
@@ -380,11 +390,6 @@ impl View<'_> {
 pub(crate) fn bounds(face: &Face, x: &[[f64; 3]]) -> Bounds {
     let places: Vec<[f64; 3]> = face.corners().iter().map(|&n| x[n as usize]).collect();
     Bounds::of_face(face.kind, &places)
-}
-
-pub(crate) fn diagonal(bounds: &Bounds) -> f64 {
-    let squares = (0..3).map(|i| (bounds.max[i] - bounds.min[i]).powi(2));
-    squares.sum::<f64>().sqrt()
 }
 
 /// Unit normal of a face at the mean of its reference corners.

@@ -482,14 +482,7 @@ fn crossing(system: &System, contact: usize) -> f64 {
     let bodies = system.touching[contact].iter();
     let across = bodies.filter_map(|&body| {
         let waves = system.bodies[body].wave_speed()?;
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for &(node, _) in &system.body_masses[body] {
-            for i in 0..3 {
-                low[i] = low[i].min(system.x[node as usize][i]);
-                high[i] = high[i].max(system.x[node as usize][i]);
-            }
-        }
-        Some(norm([0, 1, 2].map(|i| high[i] - low[i])) / waves)
+        Some(system.diagonals[body] / waves)
     });
     across.fold(0.0, f64::max)
 }

@@ -193,11 +193,16 @@ impl State {
     /// # Errors
     /// The bytes are no state, or one of another size.
     pub fn from_bytes(system: &System, bytes: &[u8]) -> Result<State, Error> {
-        let state: State = postcard::from_bytes(bytes).map_err(|cause| Error::State {
-            cause: cause.to_string(),
-        })?;
+        let state = State::decode(bytes)?;
         state.check(system)?;
         Ok(state)
+    }
+
+    /// The state in these bytes, whatever it is of.
+    pub(crate) fn decode(bytes: &[u8]) -> Result<State, Error> {
+        postcard::from_bytes(bytes).map_err(|cause| Error::State {
+            cause: cause.to_string(),
+        })
     }
 
     /// Refuses a state of another size than the system's, in any of its arrays, or of a time that is none.

@@ -109,7 +109,7 @@ impl Bounds {
     }
 
     /// Length of the diagonal, m.
-    pub(crate) fn diagonal(&self) -> f64 {
+    pub fn diagonal(&self) -> f64 {
         let side = |i: usize| (self.max[i] - self.min[i]).powi(2);
         (side(0) + side(1) + side(2)).sqrt()
     }

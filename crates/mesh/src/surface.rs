@@ -43,6 +43,14 @@ impl Face {
         &self.nodes[..self.kind.table().nodes]
     }
 
+    /// The same face with its nodes in other numbers.
+    pub fn renumbered(mut self, number: impl Fn(u32) -> u32) -> Face {
+        for node in &mut self.nodes[..self.kind.table().nodes] {
+            *node = number(*node);
+        }
+        self
+    }
+
     /// Whether the surface is all around it, at its radius: normals then point from the face to the other side.
     pub fn is_round(&self) -> bool {
         self.radius.is_some() && self.axis == [0.0; 3]

@@ -207,11 +207,20 @@ impl Ranks {
         }
         let first = count - first[0] as usize;
         let own = own.filter(|_| rank == first).unwrap_or("");
-        let mut text: Vec<f64> = own.bytes().map(f64::from).collect();
+        let mut text = numbers(own.as_bytes());
         self.pass_to_first(first, &mut text);
         self.broadcast(&mut text);
-        let bytes: Vec<u8> = text.iter().map(|byte| *byte as u8).collect();
-        Some((first, String::from_utf8_lossy(&bytes).into_owned()))
+        Some((first, String::from_utf8_lossy(&bytes(&text)).into_owned()))
+    }
+
+    /// Gives the bytes that the first rank has to all others.
+    pub fn broadcast_bytes(&self, own: &[u8]) -> Vec<u8> {
+        let mut values = match self.is_first() {
+            true => numbers(own),
+            false => Vec::new(),
+        };
+        self.broadcast(&mut values);
+        bytes(&values)
     }
 
     /// Brings numbers of a rank to the first one.
@@ -235,4 +244,29 @@ impl Ranks {
             *values = std::mem::take(&mut received[0].values);
         }
     }
+}
+
+/// Bytes that a number carries: so many bits are exact.
+const BYTES: usize = 4;
+
+/// Bytes as numbers: how many they are, and then four of them in each.
+fn numbers(bytes: &[u8]) -> Vec<f64> {
+    let number = |part: &[u8]| {
+        let mut four = [0; BYTES];
+        four[..part.len()].copy_from_slice(part);
+        f64::from(u32::from_le_bytes(four))
+    };
+    let count = std::iter::once(bytes.len() as f64);
+    count.chain(bytes.chunks(BYTES).map(number)).collect()
+}
+
+/// The reverse.
+fn bytes(numbers: &[f64]) -> Vec<u8> {
+    let Some((count, numbers)) = numbers.split_first() else {
+        return Vec::new();
+    };
+    let all = numbers.iter().map(|number| *number as u32);
+    let mut bytes: Vec<u8> = all.flat_map(u32::to_le_bytes).collect();
+    bytes.truncate(*count as usize);
+    bytes
 }

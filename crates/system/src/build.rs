@@ -7,6 +7,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, Kinematics, Reduced, Rigid};
 use carom_contact::{Contact, Frames, Places};
+use carom_mesh::Bounds;
 use carom_schemes::Scheme;
 
 use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
@@ -245,13 +246,14 @@ impl System {
             tolerance: 1e-12 * model.length(),
             axisymmetric,
             dim,
-            x,
             mesh_node,
             number,
             parts,
             unknowns,
             has_springs: bodies.iter().any(|body| !body.balances_itself()),
             has_dashpots: bodies.iter().any(Body::has_damping),
+            nodes_of_whole: x.len(),
+            diagonals: body_masses.iter().map(|own| diagonal(own, &x)).collect(),
             bodies,
             body_masses,
             mass,
@@ -281,10 +283,11 @@ impl System {
             friction: model.contacts.iter().map(|c| c.friction).collect(),
             merge_within: model.contacts.iter().map(|c| c.merge_within).collect(),
             moments,
+            x,
             initial_frames,
             initial_displacement,
             initial_velocity,
-            mesh: model.mesh,
+            mesh: Arc::new(model.mesh),
         };
         Ok((system, model.bodies, model.contacts))
     }
@@ -303,6 +306,16 @@ fn undeformed(bodies: &[Body], part_of_body: &[usize], parts: usize) -> Vec<bool
             && own().all(|(body, _)| body.has_small_displacements() || body.as_discrete().is_some())
     };
     (0..parts).map(of_part).collect()
+}
+
+/// Diagonal of the box around the nodes of a body, m; zero of one without.
+fn diagonal(masses: &[(u32, f64)], x: &[[f64; 3]]) -> f64 {
+    let nodes = masses.iter();
+    let places: Vec<[f64; 3]> = nodes.map(|(node, _)| x[*node as usize]).collect();
+    match places.is_empty() {
+        true => 0.0,
+        false => Bounds::of(&places).diagonal(),
+    }
 }
 
 /// The place nearest to zero in the box around some places, m.

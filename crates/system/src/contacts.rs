@@ -356,9 +356,5 @@ fn inner_nodes(cells: &[ElementId], surface: &Surface, mesh: &Mesh, number: &[u3
 
 /// A face with its nodes by system number.
 pub(crate) fn renumbered(face: &Face, number: &[u32]) -> Face {
-    let mut face = *face;
-    for k in 0..face.corners().len() {
-        face.nodes[k] = number[face.nodes[k] as usize];
-    }
-    face
+    face.renumbered(|node| number[node as usize])
 }

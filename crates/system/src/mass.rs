@@ -46,12 +46,7 @@ impl Parts<'_> {
     /// The sum over some of the bodies.
     fn gather(&self, takes: &dyn Fn(usize) -> bool) -> Mass {
         let n = self.unknowns.len();
-        let mut mass = Mass {
-            lumped: vec![0.0; n],
-            consistent: None,
-            reduced: Vec::new(),
-            weightless: None,
-        };
+        let mut mass = Mass::of_diagonal(vec![0.0; n]);
         let mut cliques = Cliques::new();
         let mut consistent = Vec::new();
         for (k, body) in self.bodies.iter().enumerate().filter(|(k, _)| takes(*k)) {
@@ -80,6 +75,16 @@ impl Parts<'_> {
 }
 
 impl Mass {
+    /// A diagonal one, kg, one entry per unknown.
+    pub(crate) fn of_diagonal(lumped: Vec<f64>) -> Mass {
+        Mass {
+            lumped,
+            consistent: None,
+            reduced: Vec::new(),
+            weightless: None,
+        }
+    }
+
     /// Whether it is a diagonal.
     pub fn is_lumped(&self) -> bool {
         self.consistent.is_none() && self.reduced.is_empty()

@@ -23,8 +23,8 @@ use crate::turning::TurningRows;
 /// The immutable side of a run.
 #[derive(Debug)]
 pub struct System {
-    /// The mesh, in m.
-    pub mesh: Mesh,
+    /// The mesh, in m; of a part that a rank has, that of the whole model.
+    pub mesh: Arc<Mesh>,
     /// Dimension of space.
     pub dim: usize,
     /// Which unknowns each node has, and where.
@@ -57,6 +57,10 @@ pub struct System {
     pub has_springs: bool,
     /// Whether there are dashpots.
     pub has_dashpots: bool,
+    /// Number of nodes of the whole model.
+    pub nodes_of_whole: usize,
+    /// Diagonal of the box around the nodes of each body in the reference configuration, m; zero of a body without nodes of its own.
+    pub diagonals: Vec<f64>,
     /// Lumped masses of the nodes of each body (system number, kg), for mean velocities.
     pub body_masses: Vec<Vec<(u32, f64)>>,
     /// Mass matrix.

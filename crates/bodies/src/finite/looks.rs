@@ -170,10 +170,9 @@ impl Solid {
         Ok(seen)
     }
 
-    /// Numbers of [`Looks`] for the places of an element: of the kind with most nodes.
+    /// Numbers of [`Looks`] for the places of an element: of the kind with most nodes, also where a rank has elements of others alone.
     fn places_of_look(&self) -> usize {
-        let nodes = self.blocks().iter().map(|block| block.kind.table().nodes);
-        3 * nodes.max().unwrap_or(1).saturating_sub(1)
+        3 * (self.most_nodes - 1)
     }
 
     /// Numbers that [`Looks::push`] gives of an element; none of a body whose frequencies never change.

@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 use std::path::Path;
-use std::sync::Arc;
 
 use carom_case::{
     Built, Failed, Finished, Input, Resume, build, parse, run, run_on_ranks, whole_on_ranks,
@@ -137,6 +136,12 @@ pub fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T
     })
 }
 
+/// What takes the steps of a case on a rank.
+pub fn driver_on(ranks: &Ranks, text: &str) -> Driver {
+    let (_, _, mut built) = built(text);
+    Driver::on_ranks(&mut built.system, None, ranks, Watched::default()).unwrap()
+}
+
 /// Runs a case on so many ranks, with the end of each.
 pub fn run_on(
     count: usize,
@@ -145,8 +150,8 @@ pub fn run_on(
     steps: u64,
 ) -> Vec<Result<Option<Finished>, Failed>> {
     on_all(count, |ranks| {
-        let (input, case, built) = built(text);
-        let parts = (&input, &case, &built);
+        let (input, case, mut built) = built(text);
+        let parts = (&input, &case, &mut built);
         run_on_ranks(ranks, parts, folder.to_owned(), &mut Nobody, &after(steps))
     })
 }
@@ -453,9 +458,7 @@ fn results_that_cannot_be_written_end_all_ranks() {
 fn sent(height: &str, steps: u64) -> Vec<[f64; 2]> {
     let text = block(SMALL).replace("0.002]", height);
     on_all(4, |ranks| {
-        let (_, _, built) = built(&text);
-        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
-        driver.share(ranks, &Watched::default()).unwrap();
+        let mut driver = driver_on(ranks, &text);
         let before = driver.rank_share().unwrap();
         (0..steps).for_each(|_| driver.step().unwrap());
         let sent = driver.rank_share().unwrap().sent_bytes - before.sent_bytes;

@@ -1,11 +1,7 @@
 //! Contacts of which several ranks have points.
 
-use std::sync::Arc;
-
-use carom_dynamics::{Driver, Watched};
-
 use crate::ranks::{
-    assert_same, built, compare_on_ranks, last, on_all, resume_on, run_alone, run_on,
+    assert_same, built, compare_on_ranks, driver_on, last, on_all, resume_on, run_alone, run_on,
 };
 
 /// A block between a floor that slides, with friction, a ball, and a wall that crushes; another block that strikes its corner; and a
@@ -61,10 +57,7 @@ record = ["contact"]
 #[test]
 fn contacts_of_several_kinds_are_those_of_one_process_on_several_ranks() {
     let shares = on_all(4, |ranks| {
-        let (_, _, built) = built(CORNER);
-        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
-        driver.share(ranks, &Watched::default()).unwrap();
-        driver.rank_share().unwrap().points
+        driver_on(ranks, CORNER).rank_share().unwrap().points
     });
     let (_, _, built) = built(CORNER);
     assert_eq!(shares.iter().sum::<usize>(), built.system.points());
@@ -124,9 +117,7 @@ fn one_contact_at_two_places_is_shared_out_and_moves_from_rank_to_rank() {
     let closings = state.records.contacts.iter().map(|record| record.closings);
     assert!(closings.max().unwrap() > 0);
     let shares = on_all(3, |ranks| {
-        let (_, _, built) = built(ENDS);
-        let mut driver = Driver::new(Arc::clone(&built.system)).unwrap();
-        driver.share(ranks, &Watched::default()).unwrap();
+        let mut driver = driver_on(ranks, ENDS);
         let mut seen = vec![driver.rank_share().unwrap()];
         for _ in 0..40 {
             (0..10).for_each(|_| driver.step().unwrap());

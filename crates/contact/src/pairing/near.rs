@@ -119,7 +119,7 @@ impl Contact {
         let faces = secondary.iter().chain(target);
         let (mut sum, mut count) = (0.0, 0.0);
         for face in faces.filter(|face| face.kind.table().dim > 0) {
-            sum += crate::sight::diagonal(&crate::sight::bounds(face, x));
+            sum += crate::sight::bounds(face, x).diagonal();
             count += 1.0;
         }
         if count > 0.0 {

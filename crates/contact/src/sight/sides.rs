@@ -62,6 +62,21 @@ impl Sides {
         }
     }
 
+    /// The same with nodes in other numbers.
+    pub(super) fn renumbered(&self, number: impl Fn(u32) -> u32) -> Sides {
+        let mut points = Vec::new();
+        let with = self.points.iter().zip(0..);
+        for (&point, node) in with.filter(|(point, _)| **point != NONE) {
+            let node = number(node) as usize;
+            points.resize(points.len().max(node + 1), NONE);
+            points[node] = point;
+        }
+        Sides {
+            points,
+            ..self.clone()
+        }
+    }
+
     /// The point of a node.
     pub(crate) fn point_of(&self, node: u32) -> Option<usize> {
         let point = self.points.get(node as usize).copied();

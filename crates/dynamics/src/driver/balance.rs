@@ -318,7 +318,7 @@ impl Driver {
             - stored
             - self.stored.dissipated
             - self.stored.viscous;
-        let nodes = system.x.len() as f64;
+        let nodes = system.nodes_of_whole as f64;
         let travel = (0..new.u.len()).map(|i| (new.u[i] - old.u[i]).powi(2));
         let tolerated = Tolerated {
             energy: self.left_over * travel.sum::<f64>().sqrt(),

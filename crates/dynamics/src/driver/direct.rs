@@ -409,7 +409,7 @@ impl Driver {
             squares.stage = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
             self.left_over =
                 self.system.nonlinear.iteration.tolerance * scale(sums, self.dt).max(link_norm);
-            let nodes = system.x.len() as f64;
+            let nodes = system.nodes_of_whole as f64;
             ledger.go_beyond(&Beyond {
                 work_obstacles: obstacles,
                 dissipation_material: stored.dissipated,

@@ -18,7 +18,11 @@ use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::records::ContactRecord;
-use crate::shared::{InReach, Own, Part, Shared, SharedNodes, Told, partition_of};
+use crate::shared::{
+    Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive,
+};
+use crate::state::State;
+use crate::system::System;
 use crate::update::Sums;
 
 /// What one of several ranks has of a run, and sends to others.
@@ -43,28 +47,65 @@ pub struct RankShare {
 }
 
 impl Driver {
-    /// Shares the run, whose state all ranks have, with others: the elements of explicit steps that can be shared
-    /// ([`why_not_on_ranks`](crate::why_not_on_ranks)); of others the products of iterations, while each rank takes all of the step
-    /// ([`Alike`](crate::Alike)). All ranks ask together.
+    /// What takes the steps on one of several ranks, from the start or from a `saved` state ([`State::to_bytes`]). Ranks share the elements of
+    /// explicit steps that can be shared ([`why_not_on_ranks`](crate::why_not_on_ranks)): on other ranks than the first `system` is then the part of it
+    /// that the rank has. Of others they share the products of iterations, while each rank takes all of the step ([`Alike`](crate::Alike)). All
+    /// ranks ask together.
     ///
     /// # Errors
-    /// [`Error::Partition`].
-    pub fn share(&mut self, ranks: &Ranks, watched: &Watched) -> Result<(), Error> {
-        if ranks.count() == 1 {
-            return Ok(());
+    /// [`Error::Partition`]; as [`Driver::new`], of the first rank on all.
+    pub fn on_ranks(
+        system: &mut Arc<System>,
+        saved: Option<&[u8]>,
+        ranks: &Ranks,
+        mut watched: Watched,
+    ) -> Result<Driver, Error> {
+        let shares = super::unfit::why_not_on_ranks(system).is_none();
+        if ranks.count() == 1 || !shares {
+            let mut driver = Driver::from_saved(system, saved)?;
+            driver.effective.share(ranks);
+            return Ok(driver);
         }
+        let begin = Begin::new(system, ranks)?;
+        let begun = match ranks.is_first() {
+            true => Driver::from_saved(system, saved).map(Some),
+            false => Ok(None),
+        };
+        let (mut driver, own) = match (of_all(ranks, begun)?, ranks.rank()) {
+            (Some(mut driver), _) => {
+                let given = begin.give((system, ranks), &mut driver.state);
+                of_all(ranks, given)?;
+                (driver, begin.of_first())
+            }
+            (None, rank) => {
+                let own = begin.of_other(rank, system, &mut watched);
+                let driver = receive(system, ranks)
+                    .and_then(|state| Driver::resume(Arc::clone(system), state));
+                (of_all(ranks, driver)?, own)
+            }
+        };
+        driver.share(ranks, (&watched, own));
+        Ok(driver)
+    }
+
+    fn from_saved(system: &Arc<System>, saved: Option<&[u8]>) -> Result<Driver, Error> {
+        match saved {
+            None => Driver::new(Arc::clone(system)),
+            Some(bytes) => {
+                let state = State::from_bytes(system, bytes)?;
+                Driver::resume(Arc::clone(system), state)
+            }
+        }
+    }
+
+    /// Shares the steps with other ranks. `own`: the elements of this one.
+    fn share(&mut self, ranks: &Ranks, (watched, own): (&Watched, OwnElements)) {
         let system = Arc::clone(&self.system);
-        let shares = super::unfit::why_not_on_ranks(&system).is_none();
-        if !shares || self.direct.is_none() {
-            self.effective.share(ranks);
-            return Ok(());
-        }
-        let elements = partition_of(&system, ranks)?;
         let map = self.maps.first();
         let at_ends = |contact: usize| self.paired_at(contact).row(map) == map.displacement;
         let in_reach = InReach::new(&system, &self.active.reaches, at_ends);
         let given = (in_reach, &self.state);
-        let mut shared = Shared::new(&system, ranks, (watched, elements), given);
+        let mut shared = Shared::new(&system, ranks, (watched, own), given);
         shared.take_looks(&system, &self.state.shapes.looks);
         if !shared.is_first() {
             self.state.shapes.looks = Vec::new();
@@ -80,7 +121,6 @@ impl Driver {
         }
         self.shared = Some(Box::new(shared));
         self.several = true;
-        Ok(())
     }
 
     /// Whether several ranks take the steps.
@@ -111,7 +151,7 @@ impl Driver {
             contact_shares: shared.found_homes,
             halo_bytes: shared.halo.bytes(self.system.dim),
             sent_bytes: shared.ranks.sent_bytes(),
-            shared_nodes: shared.shared_nodes,
+            shared_nodes: shared.shared_nodes(),
         })
     }
 
@@ -329,6 +369,15 @@ impl Driver {
     }
 }
 
+/// What this rank has, if none has an error.
+fn of_all<T>(ranks: &Ranks, own: Result<T, Error>) -> Result<T, Error> {
+    let text = own.as_ref().err().map(ToString::to_string);
+    match ranks.first_text(text.as_deref()) {
+        None => own,
+        Some((rank, cause)) => own.and(Err(Error::OnRank { rank, cause })),
+    }
+}
+
 /// The error of a step that has failed on some rank, on all of them the same.
 fn of_ranks(ranks: &Ranks, own: Option<Error>) -> Error {
     let text = own.map(|error| error.to_string());
@@ -341,7 +390,7 @@ impl Shared {
     /// point of each element is looked at.
     fn distortions(&self, u: &[f64], looks: usize) -> Vec<Option<Distortion>> {
         let none = Distortion::default();
-        let of_body = |shares: &[Share; 2]| {
+        let of_body = |(body, shares): (usize, &[Share; 2])| {
             let mut found = [[0.0; 2]; 2];
             let mut small = false;
             for share in shares {
@@ -353,13 +402,13 @@ impl Shared {
                     if let Some(&place) = share.places().get(one.cell as usize)
                         && one.value > most[0]
                     {
-                        *most = [one.value, f64::from(place)];
+                        *most = [one.value, f64::from(self.place_in_whole(body, place))];
                     }
                 }
             }
             (small, found)
         };
-        let own: Vec<(bool, [[f64; 2]; 2])> = self.bodies().map(of_body).collect();
+        let own: Vec<(bool, [[f64; 2]; 2])> = self.bodies().enumerate().map(of_body).collect();
         let values = own.iter().flat_map(|(_, found)| found.map(|one| one[0]));
         let mut values: Vec<f64> = values.collect();
         self.ranks.reduce(&mut [], &mut values);

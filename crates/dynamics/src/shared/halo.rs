@@ -72,6 +72,27 @@ impl AtNodes {
         AtNodes { first, further }
     }
 
+    /// Whether elements of a rank have each node.
+    pub(crate) fn has(&self, rank: usize) -> Vec<bool> {
+        let rank = rank as u32;
+        let mut has: Vec<bool> = self.first.iter().map(|first| *first == rank).collect();
+        let further = self.further.iter().filter(|[_, part]| *part == rank);
+        further.for_each(|[node, _]| has[*node as usize] = true);
+        has
+    }
+
+    /// Of some of the nodes alone, ascending, which these are the numbers of.
+    pub(crate) fn some(&self, nodes: &[u32]) -> AtNodes {
+        let further = self.further.iter().filter_map(|&[node, part]| {
+            let place = nodes.binary_search(&node).ok()?;
+            Some([place as u32, part])
+        });
+        AtNodes {
+            first: nodes.iter().map(|node| self.first[*node as usize]).collect(),
+            further: further.collect(),
+        }
+    }
+
     /// The owner of each node.
     fn owners(&self) -> Vec<u32> {
         let mut owner = self.first.clone();

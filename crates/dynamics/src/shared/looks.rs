@@ -3,6 +3,7 @@
 use carom_bodies::{Body, Looks, Seen, Share, Solid};
 use carom_ranks::{Message, Ranks};
 
+use super::OwnElements;
 use super::halo::{Halo, Parts};
 use crate::error::Error;
 use crate::system::{Motion, System};
@@ -117,7 +118,7 @@ impl SharedLooks {
     /// Brings to the first rank, if there is anything new, what is known of the frequencies of all elements.
     pub(super) fn gather(
         &mut self,
-        (ranks, shares): (&Ranks, &[[Share; 2]]),
+        (ranks, elements, shares): (&Ranks, &OwnElements, &[[Share; 2]]),
         system: &System,
         all: &mut Vec<Looks>,
     ) {
@@ -135,7 +136,7 @@ impl SharedLooks {
             }
             for (share, looks) in shares.iter().zip(looks) {
                 for (element, &place) in share.places().iter().enumerate() {
-                    own.push(f64::from(place));
+                    own.push(f64::from(elements.place_in_whole(k, place)));
                     looks.push(element, &mut own);
                 }
             }

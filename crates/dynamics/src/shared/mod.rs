@@ -1,10 +1,12 @@
 //! A run that several processes compute together, in explicit steps.
 //!
-//! All ranks have the same [`System`] and vectors of its length, but each computes the forces of its own elements, the motion of their
-//! nodes, and the contact points whose [home](homes) it is; other entries are those of some earlier step, and nobody reads them. Sums over all
+//! The first rank has the whole [`System`], each other its [part](begin): its own elements with their nodes, and those of all contacts. Each computes
+//! the forces of its own elements, the motion of their nodes, and the contact points whose [home](homes) it is; other entries are those of some
+//! earlier step, and nobody reads them. Sums over all
 //! ranks end a step ([`Shared::sum_up`]), so that all have the same ledger and records. The first one has the results: what it needs of the others comes where somebody looks
 //! ([`Shared::gather`]).
 
+mod begin;
 mod contacts;
 pub(crate) mod halo;
 mod homes;
@@ -26,17 +28,15 @@ use crate::resultant::Resultant;
 use crate::state::State;
 use crate::system::{Motion, System};
 use crate::update::Sums;
-use halo::{AtNodes, Halo, contact_nodes, messages, pack, unpack};
+use halo::{Halo, contact_nodes, messages, pack, unpack};
 pub(crate) use homes::{Own, Part};
 pub(crate) use in_reach::InReach;
-use parts::Partition;
+pub(crate) use begin::{Begin, Own as OwnElements, receive};
 pub use parts::SharedNodes;
-pub(crate) use parts::partition_of;
 
 /// What a rank has of a run.
 pub(crate) struct Shared {
     pub(crate) ranks: Ranks,
-    pub(crate) shared_nodes: SharedNodes,
     pub(crate) halo: Halo,
     /// What is known of the faces that points may touch.
     pub(crate) in_reach: InReach,
@@ -44,14 +44,14 @@ pub(crate) struct Shared {
     pub(crate) found_homes: usize,
     /// The most points of this rank so far that might touch something.
     pub(crate) looked: usize,
-    elements: AtNodes,
+    own: OwnElements,
     watched: Watched,
     /// Of each body the elements at nodes that others may have too, and the others.
     bodies: Vec<[Share; 2]>,
     sends: Vec<Message>,
     receives: Vec<Message>,
     /// Forces of this rank's elements on the shared nodes, N.
-    own: Vec<f64>,
+    given: Vec<f64>,
     /// Forces of the contacts: those that this rank gives to others, and those that it is given.
     touches: Vec<Message>,
     touched: Vec<Message>,
@@ -73,18 +73,16 @@ pub(crate) struct Told {
 }
 
 impl Shared {
-    /// Of this rank, in a state that all ranks have as a whole. `partition`: of the elements of each body, solids all of them.
+    /// Of this rank, in a state in which all nodes that it has are known. `own`: its elements, of solids.
     pub(crate) fn new(
         system: &System,
         ranks: &Ranks,
-        (watched, partition): (&Watched, Partition),
+        (watched, own): (&Watched, OwnElements),
         (in_reach, state): (InReach, &State),
     ) -> Shared {
         let rank = ranks.rank();
-        let elements = partition.of_bodies;
         let mut shared = Shared {
             ranks: ranks.clone(),
-            shared_nodes: partition.shared,
             halo: Halo::default(),
             in_reach,
             found_homes: 0,
@@ -93,16 +91,16 @@ impl Shared {
             bodies: Vec::new(),
             sends: Vec::new(),
             receives: Vec::new(),
-            own: Vec::new(),
+            given: Vec::new(),
             touches: Vec::new(),
             touched: Vec::new(),
             sums: Vec::new(),
             largest: Vec::new(),
-            whole: whole::Whole::new(system, &elements, rank),
-            looks: looks::SharedLooks::new(&elements, ranks.count()),
+            whole: whole::Whole::new(system, &own.ranks, rank),
+            looks: looks::SharedLooks::new(&own.ranks, ranks.count()),
             points: contacts::SharedPoints::default(),
             spread: spread::Spread::default(),
-            elements: AtNodes::new(system, &elements),
+            own,
         };
         shared.in_reach.look(system, state, ranks);
         shared.find_homes(system);
@@ -123,7 +121,7 @@ impl Shared {
             body.as_solid()
                 .map(|solid| lists.map(|list| solid.share(list)))
         };
-        let bodies = system.bodies.iter().zip(&elements);
+        let bodies = system.bodies.iter().zip(&shared.own.ranks);
         shared.bodies = bodies.filter_map(shares).collect();
         shared
     }
@@ -131,10 +129,11 @@ impl Shared {
     /// Finds which rank has which contact points.
     fn find_homes(&mut self, system: &System) {
         let (rank, dim) = (self.ranks.rank(), system.dim);
-        let halo = Halo::new(system, (&self.elements, &self.in_reach.faces), rank);
+        let at_nodes = &self.own.at_nodes;
+        let halo = Halo::new(system, (at_nodes, &self.in_reach.faces), rank);
         self.sends = messages(&halo.sends, dim);
         self.receives = messages(&halo.receives, dim);
-        self.own = vec![0.0; dim * halo.shared.len()];
+        self.given = vec![0.0; dim * halo.shared.len()];
         self.touches = messages(&halo.touches, dim);
         self.touched = messages(&halo.touched, dim);
         self.points = contacts::SharedPoints::new(system, (&halo, rank), &self.watched);
@@ -164,6 +163,16 @@ impl Shared {
     /// Whether this is the first rank.
     pub(crate) fn is_first(&self) -> bool {
         self.ranks.is_first()
+    }
+
+    /// Nodes that ranks share, by both ways of sharing out the elements.
+    pub(crate) fn shared_nodes(&self) -> SharedNodes {
+        self.own.shared_nodes
+    }
+
+    /// The place among the elements of the whole body that an element of this rank's has.
+    pub(crate) fn place_in_whole(&self, body: usize, place: u32) -> u32 {
+        self.own.place_in_whole(body, place)
     }
 
     /// Of each body the elements at nodes that others have too, and the others.
@@ -236,7 +245,7 @@ impl Shared {
     fn add_up(&mut self, dim: usize, forces: &mut [f64]) {
         let Shared {
             halo,
-            own,
+            given: own,
             receives,
             ranks,
             ..
@@ -322,7 +331,7 @@ impl Shared {
 
     /// Brings to the first rank, if there is anything new, what is known of the frequencies of all elements.
     pub(crate) fn gather_looks(&mut self, system: &System, all: &mut Vec<Looks>) {
-        let of = (&self.ranks, &self.bodies[..]);
+        let of = (&self.ranks, &self.own, &self.bodies[..]);
         self.looks.gather(of, system, all);
     }
 
