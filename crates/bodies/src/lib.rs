@@ -65,6 +65,6 @@ pub use shell::{
     shell_defects,
 };
 pub use size::{height, smallest as smallest_size};
-pub use solid::{BodySpec, Solid};
+pub use solid::{BodySpec, Solid, by_kind};
 pub use turning::balanced;
 pub use weights::CellWeights;

@@ -290,6 +290,16 @@ impl Solid {
         self.material.wave_speed(self.kinematics.plane())
     }
 
+    /// Nodes of the kind of element that has most of them.
+    pub fn most_nodes(&self) -> usize {
+        self.most_nodes
+    }
+
+    /// Tells a part of a body what is known of the whole: [`Solid::smallest_size`] (m), and [`Solid::most_nodes`].
+    pub fn know_whole(&mut self, (smallest, most_nodes): (f64, usize)) {
+        (self.smallest, self.most_nodes) = (smallest, most_nodes);
+    }
+
     /// Smallest size of an element over its faces, in m: the h_e of the Courant number c dt / h_e.
     pub fn smallest_size(&self) -> f64 {
         self.smallest
@@ -568,35 +578,42 @@ impl Parts<'_> {
     /// The cells by kind, and their blocks. `factors`: of their masses.
     fn blocks(&self, factors: Option<&[f64]>) -> (Vec<ElementId>, Vec<Block>) {
         let (mesh, spec) = (self.mesh, self.spec);
-        let (mut cells, mut blocks) = (Vec::with_capacity(spec.cells.len()), Vec::new());
-        for kind in Kind::ALL {
-            let all = spec.cells.iter().copied();
-            let of_kind: Vec<ElementId> = all.filter(|&cell| mesh.kind(cell) == kind).collect();
+        let (cells, mut blocks) = (by_kind(mesh, &spec.cells), Vec::new());
+        let mut before = 0;
+        for of_kind in cells.chunk_by(|one, other| mesh.kind(*one) == mesh.kind(*other)) {
+            let kind = mesh.kind(of_kind[0]);
             let nodes = of_kind.iter().flat_map(|&cell| mesh.element_nodes(cell));
             let elements: Vec<u32> = nodes.map(|&node| self.number[node as usize]).collect();
-            if !elements.is_empty() {
-                let of_all = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
-                let mut weights = spec.weights.as_ref().map(of_all);
-                if let Some(factors) = factors {
-                    let own = &factors[cells.len()..][..of_kind.len()];
-                    let count = elements.len();
-                    let weights = weights.get_or_insert_with(|| CellWeights::ones(count));
-                    weights.scale_inertia(own, kind.table().nodes);
-                }
-                let nodes = Nodes {
-                    elements: &elements,
-                    x: self.x,
-                    unknowns: self.unknowns,
-                };
-                let rule = match spec.exact_products && spec.material.finite().is_none() {
-                    true => kind.table().weighted_stiffness_rule(),
-                    false => kind.table().stiffness_rule,
-                };
-                let weights = weights.as_ref();
-                blocks.push(Block::new((kind, rule), self.physics, &nodes, weights));
+            let of_all = |all: &CellWeights| all.of_kind(mesh, &spec.cells, kind);
+            let mut weights = spec.weights.as_ref().map(of_all);
+            if let Some(factors) = factors {
+                let own = &factors[before..][..of_kind.len()];
+                let count = elements.len();
+                let weights = weights.get_or_insert_with(|| CellWeights::ones(count));
+                weights.scale_inertia(own, kind.table().nodes);
             }
-            cells.extend(of_kind);
+            let nodes = Nodes {
+                elements: &elements,
+                x: self.x,
+                unknowns: self.unknowns,
+            };
+            let rule = match spec.exact_products && spec.material.finite().is_none() {
+                true => kind.table().weighted_stiffness_rule(),
+                false => kind.table().stiffness_rule,
+            };
+            let weights = weights.as_ref();
+            blocks.push(Block::new((kind, rule), self.physics, &nodes, weights));
+            before += of_kind.len();
         }
         (cells, blocks)
     }
+}
+
+/// Cells of a mesh kind by kind, those of one kind in their order: as [`Solid::cells`] has them.
+pub fn by_kind(mesh: &Mesh, cells: &[ElementId]) -> Vec<ElementId> {
+    let of_kind = |kind: Kind| {
+        let all = cells.iter().copied();
+        all.filter(move |&cell| mesh.kind(cell) == kind)
+    };
+    Kind::ALL.into_iter().flat_map(of_kind).collect()
 }

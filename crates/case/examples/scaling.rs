@@ -85,13 +85,15 @@ fn timed(ranks: &Ranks, text: &str) -> Anyhow<[f64; 3]> {
     let told = |problems| format!("{problems:?}");
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).map_err(told)?;
-    let mut built = build(&case, &locator, &input).map_err(told)?;
+    let built = match ranks.is_first() {
+        true => Some(build(&case, &locator, &input).map_err(told)?),
+        false => None,
+    };
     let folder = tempfile::tempdir()?;
     let mut clock = Clock::default();
-    let parts = (&input, &case, &mut built);
-    let done = run_on_ranks(ranks, parts, folder.path().join("run"), &mut clock, &|| {
-        false
-    })?;
+    let read = (&input, &case, &locator);
+    let folder = folder.path().join("run");
+    let done = run_on_ranks(ranks, read, built, folder, &mut clock, &|| false)?;
     if let Some(share) = done
         .and_then(|done| done.ranks)
         .filter(|_| ranks.count() > 1)

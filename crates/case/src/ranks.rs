@@ -4,66 +4,131 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_dynamics::{Alike, Costs, Error, Observer, Outcome, RankShare, march, why_not_on_ranks};
+use carom_dynamics::{
+    Alike, Costs, Driver, Error, Observer, Outcome, RankShare, march, why_not_on_ranks,
+};
 use carom_output::checkpoint::Checkpoint;
 use carom_output::{Pieces, Results, Settings, watched};
 use carom_ranks::Ranks;
 
-use crate::build::Built;
+use crate::build::{Built, build, model};
+use crate::error::Problem;
 use crate::input::Input;
+use crate::locate::Locator;
 use crate::origin::Origin;
 use crate::run::{Failed, Finished, March, conclude, settings};
 use crate::schema::Case;
 use crate::stepping::Stepping;
 
-/// Runs a case on several ranks, each of which has built it: the first one writes the results folder, and has the end to tell. `progress` and
-/// `stop` count there alone. Where ranks share the elements, `built` has the rank's part of the system then.
+/// Runs a case on several ranks, each of which has read it, and the first one `built` it: that writes the results folder, and has the end to tell.
+/// `progress` and `stop` count there alone. The others build their parts of the system where ranks share the elements, and all of it where not.
 ///
 /// # Errors
 /// As [`run`](crate::run()), on all ranks: where it happened on another one, with that rank.
 pub fn run_on_ranks(
     ranks: &Ranks,
-    (input, case, built): (&Input, &Case, &mut Built),
+    read: (&Input, &Case, &Locator),
+    built: Option<Built>,
     folder: PathBuf,
     progress: &mut dyn Observer,
     stop: &dyn Fn() -> bool,
 ) -> Result<Option<Finished>, Failed> {
+    let (input, case, _) = read;
     let origin = Origin::of(input, case, &folder);
-    let mut settings = settings((input, case, built), folder, &origin);
-    let run = shared((ranks, built, &mut settings), None, &Costs::default())?;
-    let built = &*built;
-    let results = |settings| Results::create(settings, Arc::clone(&built.system));
-    let of = (ranks, built, settings);
-    go_through(of, (run, march), (results, None), (progress, stop))
+    let begun = begin((ranks, read), built, (folder, &origin), None)?;
+    let system = Arc::clone(&begun.built.system);
+    let results = |settings| Results::create(settings, system);
+    go_through(ranks, begun, march, (results, None), (progress, stop))
 }
 
-/// What takes the steps together with the other ranks, from the bytes of a state or from the start.
-pub(crate) fn shared(
-    (ranks, built, settings): (&Ranks, &mut Built, &mut Settings),
-    saved: Option<&[u8]>,
-    costs: &Costs,
-) -> Result<Stepping, Failed> {
-    let watched = watched(settings, &built.system);
-    let watched = watched.map_err(|error| Error::Observer(Box::new(error)));
-    let watched = together(ranks, watched, Failed::Start)?;
-    let run = Stepping::on_ranks(built, saved, ranks, watched);
-    let mut run = together(ranks, run, Failed::Start)?;
-    run.add_earlier(costs);
+/// A run that has begun on a rank.
+pub(crate) struct Begun {
+    run: Stepping,
+    /// The case as built; on other ranks than the first, where these share the elements, with their part of the system.
+    pub(crate) built: Built,
+    settings: Settings,
+}
+
+/// Begins a run on several ranks, from the bytes of a state and what the run has cost up to it, or from the start.
+pub(crate) fn begin(
+    (ranks, read): (&Ranks, (&Input, &Case, &Locator)),
+    built: Option<Built>,
+    (folder, origin): (PathBuf, &Origin),
+    saved: Option<(Vec<u8>, Costs)>,
+) -> Result<Begun, Failed> {
+    let (input, case, locator) = read;
+    let (saved, costs) = saved.unzip();
+    let settings = |built: &Built| settings((input, case, built), folder, origin);
+    let refused = |problems: Vec<Problem>| {
+        let first = problems.first().map(|problem| problem.message.clone());
+        Error::Observer(first.unwrap_or_default().into())
+    };
+    let (mut run, built, mut settings) = match (share_elements(ranks, built.as_ref()), built) {
+        (true, Some(built)) => {
+            let settings = settings(&built);
+            let watched = watched(&settings, &built.system);
+            let watched = watched.map_err(|error| Error::Observer(Box::new(error)));
+            let watched = together(ranks, watched, Failed::Start)?;
+            let system = Arc::clone(&built.system);
+            let driver = Driver::on_ranks(system, saved.as_deref(), ranks, &watched);
+            let driver = together(ranks, driver, Failed::Start)?;
+            (Stepping::One(Box::new(driver)), built, settings)
+        }
+        (true, None) => {
+            // the first rank has the state
+            drop(saved);
+            let model = model(case, locator, input).map_err(refused);
+            let model = together(ranks, model, Failed::Start)?;
+            let (driver, system) = together(ranks, Driver::beside(model, ranks), Failed::Start)?;
+            let built = Built::beside(system, case.time.end.0);
+            let settings = settings(&built);
+            (Stepping::One(Box::new(driver)), built, settings)
+        }
+        (false, built) => {
+            let built = match built {
+                Some(built) => Ok(built),
+                None => build(case, locator, input).map_err(refused),
+            };
+            let built = together(ranks, built, Failed::Start)?;
+            let settings = settings(&built);
+            let run = Stepping::alike(&built, saved.as_deref(), ranks);
+            (together(ranks, run, Failed::Start)?, built, settings)
+        }
+    };
+    run.add_earlier(&costs.unwrap_or_default());
     settings.piece = run.piece(ranks);
-    Ok(run)
+    Ok(Begun {
+        run,
+        built,
+        settings,
+    })
+}
+
+/// Whether ranks share the elements of a case, which the first one has built.
+fn share_elements(ranks: &Ranks, built: Option<&Built>) -> bool {
+    let shares = built.is_some_and(|built| whole_on_ranks(built).is_none());
+    let mut said = vec![f64::from(shares && ranks.count() > 1)];
+    ranks.broadcast(&mut said);
+    said[0] != 0.0
 }
 
 /// Takes the steps to the end of the case, with results on the first rank, and pieces of the fields on the others; from a `checkpoint` or from the
 /// start.
 pub(crate) fn go_through(
-    (ranks, built, settings): (&Ranks, &Built, Settings),
-    (mut run, march): (Stepping, March),
+    ranks: &Ranks,
+    begun: Begun,
+    march: March,
     (results, checkpoint): (
         impl FnOnce(Settings) -> Result<Results, carom_output::Error>,
         Option<&Checkpoint>,
     ),
     (progress, stop): (&mut dyn Observer, &dyn Fn() -> bool),
 ) -> Result<Option<Finished>, Failed> {
+    let Begun {
+        mut run,
+        built,
+        settings,
+    } = begun;
     let now = Instant::now();
     let system = Arc::clone(&built.system);
     let observer = match ranks.is_first() {
@@ -96,7 +161,7 @@ pub(crate) fn go_through(
         (_, own) => own,
     };
     let share = busiest(ranks, &run);
-    let zones = run.zones(built);
+    let zones = run.zones(&built);
     let finished = conclude((*results, outcome), (run.get(), zones), (now, built.end))?;
     Ok(Some(Finished {
         ranks: Some(share),

@@ -12,9 +12,10 @@ use carom_ranks::Ranks;
 use crate::build::{Built, build};
 use crate::error::Problem;
 use crate::input::{Input, Source};
+use crate::locate::Locator;
 use crate::origin::Origin;
 use crate::parse::parse;
-use crate::ranks::{go_through, shared};
+use crate::ranks::{begin, go_through};
 use crate::run::{Begin, Failed, Finished, comments, march_from, settings};
 use crate::schema::Case;
 
@@ -22,8 +23,9 @@ use crate::schema::Case;
 pub struct Resume {
     input: Input,
     case: Case,
-    /// The case as built.
-    pub built: Built,
+    locator: Locator,
+    /// The case as built; none on other ranks than the first.
+    pub built: Option<Built>,
     /// The folder, which no other run may open; none on other ranks than the first.
     folder: Option<Folder>,
     path: PathBuf,
@@ -98,7 +100,10 @@ impl Resume {
         if !problems.is_empty() {
             return Err(refused(locator.locate_all(problems)));
         }
-        let built = build(&case, &locator, &input).map_err(refused)?;
+        let built = match &folder {
+            Some(_) => Some(build(&case, &locator, &input).map_err(refused)?),
+            None => None,
+        };
         // the copy in the folder begins with the overrides, which it is given anew
         if let Some(file) = input.sources.first_mut()
             && let Some(text) = file.text.strip_prefix(&written)
@@ -110,6 +115,7 @@ impl Resume {
         Ok(Resume {
             input,
             case,
+            locator,
             built,
             folder,
             path: path.to_owned(),
@@ -124,23 +130,25 @@ impl Resume {
         (self.checkpoint.head.step, self.checkpoint.head.time)
     }
 
+    /// Time at which the run is to end, s.
+    pub fn end(&self) -> f64 {
+        self.case.time.end.0
+    }
+
     /// Writes figures, report and summary as they are at the checkpoint. Histories, impacts and fields stay as they are, those after the
     /// checkpoint included, and the run can go on as before.
     ///
     /// # Errors
     /// As [`run`](crate::run()).
     pub fn report(self) -> Result<Finished, Failed> {
-        let settings = settings(
-            (&self.input, &self.case, &self.built),
-            self.path,
-            &self.origin,
-        );
-        let Some(folder) = self.folder else {
+        let (Some(folder), Some(built)) = (self.folder, self.built) else {
             return Err(Failed::Start(carom_dynamics::Error::FirstRank));
         };
+        let case = (&self.input, &self.case, &built);
+        let settings = settings(case, self.path, &self.origin);
         let begin = Begin::Review(self.checkpoint, folder);
         let stop = &|| false;
-        march_from((&self.built, settings), begin, &mut Silent, stop)
+        march_from((&built, settings), begin, &mut Silent, stop)
     }
 
     /// Goes on to the end of the case, as [`run`](crate::run()).
@@ -153,12 +161,12 @@ impl Resume {
         stop: &dyn Fn() -> bool,
     ) -> Result<Finished, Failed> {
         let origin = self.origin.of_the_rest(&self.input, &self.case);
-        let settings = settings((&self.input, &self.case, &self.built), self.path, &origin);
-        let Some(folder) = self.folder else {
+        let (Some(folder), Some(built)) = (self.folder, self.built) else {
             return Err(Failed::Start(carom_dynamics::Error::FirstRank));
         };
+        let settings = settings((&self.input, &self.case, &built), self.path, &origin);
         let begin = Begin::Checkpoint(self.checkpoint, folder);
-        march_from((&self.built, settings), begin, progress, stop)
+        march_from((&built, settings), begin, progress, stop)
     }
 
     /// The same on several ranks, which have all opened it; what the first one has to tell.
@@ -174,7 +182,8 @@ impl Resume {
         let Resume {
             input,
             case,
-            mut built,
+            locator,
+            built,
             folder,
             path,
             mut checkpoint,
@@ -182,24 +191,19 @@ impl Resume {
             ..
         } = self;
         let origin = origin.of_the_rest(&input, &case);
-        let mut settings = settings((&input, &case, &built), path, &origin);
         let costs = checkpoint.costs()?;
-        // another rank may be given its part of the state by the first one, and needs the whole no longer
+        // the results need it no longer
         let state = std::mem::take(&mut checkpoint.state);
-        let run = shared((ranks, &mut built, &mut settings), Some(&state), &costs)?;
-        if folder.is_some() {
-            checkpoint.state = state;
-        }
+        let read = (&input, &case, &locator);
+        let begun = begin((ranks, read), built, (path, &origin), Some((state, costs)))?;
+        let system = Arc::clone(&begun.built.system);
         let results = |settings| match folder {
-            Some(folder) => {
-                Results::resume(folder, &checkpoint, settings, Arc::clone(&built.system))
-            }
+            Some(folder) => Results::resume(folder, &checkpoint, settings, system),
             None => Err(Error::NoResults {
                 path: PathBuf::new(),
             }),
         };
-        let of = (ranks, &built, settings);
-        let begin = (results, Some(&*checkpoint));
-        go_through(of, (run, go_on), begin, (progress, stop))
+        let results = (results, Some(&*checkpoint));
+        go_through(ranks, begun, go_on, results, (progress, stop))
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_dynamics::{Costs, Driver, Error, RankShare, State, Stepper, Watched};
+use carom_dynamics::{Costs, Driver, Error, RankShare, State, Stepper};
 use carom_output::Piece;
 use carom_output::summary::Zones;
 use carom_ranks::Ranks;
@@ -40,21 +40,20 @@ impl Stepping {
         Ok(Stepping::One(Box::new(driver?)))
     }
 
-    /// The same on one of several ranks; `watched`: what the first one follows. See [`Driver::on_ranks`].
+    /// The same where several ranks take all of each step; they share the products of iterations ([`Driver::alike`]).
     ///
     /// # Errors
-    /// As [`Driver::on_ranks`].
-    pub(crate) fn on_ranks(
-        built: &mut Built,
+    /// As [`Stepping::new`].
+    pub(crate) fn alike(
+        built: &Built,
         saved: Option<&[u8]>,
         ranks: &Ranks,
-        watched: Watched,
     ) -> Result<Stepping, Error> {
         // zones that step apart have factors, which ranks do not share
         if built.zoned.is_some() && built.apart {
             return Stepping::new(built, saved);
         }
-        let driver = Driver::on_ranks(&mut built.system, saved, ranks, watched)?;
+        let driver = Driver::alike(&built.system, saved, ranks)?;
         Ok(Stepping::One(Box::new(driver)))
     }
 

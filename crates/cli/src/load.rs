@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
-use carom_case::{Built, Input, Problem};
+use carom_case::{Built, Input, Locator, Problem, Source};
 use carom_ranks::Ranks;
 
 use crate::exit::BAD_INPUT;
@@ -15,12 +15,32 @@ pub fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::C
     load_with(case, set, |_| Ok(()))
 }
 
-/// Warns of what several ranks do not share.
-pub fn warn_of_ranks(ranks: &Ranks, built: &Built) {
-    let whole = carom_case::whole_on_ranks(built);
+/// Warns of what several ranks do not share of what the first one has built.
+pub fn warn_of_ranks(ranks: &Ranks, built: Option<&Built>) {
+    let whole = built.and_then(carom_case::whole_on_ranks);
     if let Some(whole) = whole.filter(|_| ranks.count() > 1) {
         err!("warning: {whole}");
     }
+}
+
+/// A case as read, and on the first rank as built.
+pub type Read = (Input, carom_case::schema::Case, Locator, Option<Built>);
+
+/// As [`load`], on one of several ranks: the others than the first read it alone.
+pub fn load_on(ranks: &Ranks, case: &Path, set: &[String]) -> Result<Read, u8> {
+    // the first rank tells what is wrong
+    let refused = |sources: &[Source], problems: &[Problem]| match ranks.is_first() {
+        true => refuse(sources, problems),
+        false => BAD_INPUT,
+    };
+    let input = Input::read(case, set).map_err(|problems| refused(&[], &problems))?;
+    let wrong = |problems: Vec<Problem>| refused(&input.sources, &problems);
+    let (parsed, locator) = carom_case::parse(&input).map_err(wrong)?;
+    let built = match ranks.is_first() {
+        true => Some(carom_case::build(&parsed, &locator, &input).map_err(wrong)?),
+        false => None,
+    };
+    Ok((input, parsed, locator, built))
 }
 
 /// As [`load`]; `keep` sees the problems after they are printed.
@@ -48,7 +68,7 @@ pub fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_out
     offenders.try_for_each(|cells| cells.write(case))
 }
 
-pub fn refuse(sources: &[carom_case::Source], problems: &[Problem]) -> u8 {
+pub fn refuse(sources: &[Source], problems: &[Problem]) -> u8 {
     let styled = std::io::stderr().is_terminal();
     terminal::write_styled(&diagnostics::render(sources, problems, styled));
     BAD_INPUT

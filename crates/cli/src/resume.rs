@@ -44,7 +44,7 @@ pub fn resume(arguments: &Arguments, ranks: &Ranks) -> u8 {
     let time = quantity(time, "s");
     err!("going on from the checkpoint of step {step} at {time}");
     let quiet = arguments.quiet || !ranks.is_first();
-    let ended = until_stopped(run.built.end, quiet, |progress, stop| match ranks.count() {
+    let ended = until_stopped(run.end(), quiet, |progress, stop| match ranks.count() {
         1 => run.run(progress, stop).map(Some),
         _ => run.run_on_ranks(ranks, progress, stop),
     });
@@ -57,7 +57,7 @@ fn open_on(ranks: &Ranks, folder: &Path, overrides: &[String]) -> Result<Resume,
         true => open(folder, overrides)?,
         false => Resume::open_beside(folder, overrides).map_err(|_| BAD_INPUT)?,
     };
-    warn_of_ranks(ranks, &run.built);
+    warn_of_ranks(ranks, run.built.as_ref());
     Ok(run)
 }
 

@@ -14,7 +14,7 @@ use carom_output::{Grade, Level, Summary};
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
-use crate::load::{load, warn_of_ranks};
+use crate::load::{load_on, warn_of_ranks};
 use crate::progress::Progress;
 use crate::ranks::all_have;
 use crate::terminal::{err, line, out};
@@ -40,16 +40,16 @@ pub struct Arguments {
 
 /// Runs a case; returns the exit code.
 pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
-    let loaded = load(&arguments.case, &arguments.set);
-    let (input, case, mut built) = match all_have(ranks, loaded) {
+    let loaded = load_on(ranks, &arguments.case, &arguments.set);
+    let (input, case, locator, built) = match all_have(ranks, loaded) {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
-    for warning in &built.warnings {
+    for warning in built.iter().flat_map(|built| &built.warnings) {
         err!("warning: {}", line(warning));
     }
-    warn_of_ranks(ranks, &built);
-    for (body, told) in &built.reductions {
+    warn_of_ranks(ranks, built.as_ref());
+    for (body, told) in built.iter().flat_map(|built| &built.reductions) {
         err!("{}", line(&format!("reduction of {body}: {told}")));
     }
     let folder = arguments
@@ -57,13 +57,16 @@ pub fn run(arguments: &Arguments, ranks: &Ranks) -> u8 {
         .clone()
         .unwrap_or_else(|| arguments.case.with_extension("carom"));
     let quiet = arguments.quiet || !ranks.is_first();
-    let ended = until_stopped(built.end, quiet, |progress, stop| {
+    let ended = until_stopped(case.time.end.0, quiet, |progress, stop| {
         let folder = folder.clone();
-        match ranks.count() {
-            1 => carom_case::run((&input, &case, &built), folder, progress, stop).map(Some),
-            _ => {
-                let case = (&input, &case, &mut built);
-                carom_case::run_on_ranks(ranks, case, folder, progress, stop)
+        match (built, ranks.count()) {
+            (Some(built), 1) => {
+                let case = (&input, &case, &built);
+                carom_case::run(case, folder, progress, stop).map(Some)
+            }
+            (built, _) => {
+                let read = (&input, &case, &locator);
+                carom_case::run_on_ranks(ranks, read, built, folder, progress, stop)
             }
         }
     });

@@ -62,6 +62,29 @@ pub struct Watched {
     pub points: Vec<u32>,
 }
 
+impl Watched {
+    /// Tells the other ranks what the first one, this, follows.
+    pub(crate) fn give(&self, system: &System, ranks: &Ranks) {
+        let mesh_node = |node: &u32| f64::from(system.mesh_node[*node as usize]);
+        let mut told = vec![self.nodes.len() as f64];
+        told.extend(self.nodes.iter().map(mesh_node));
+        told.extend(self.points.iter().map(|point| f64::from(*point)));
+        ranks.broadcast(&mut told);
+    }
+
+    /// What of it is in the part of the system that another rank has.
+    pub(crate) fn receive(system: &System, ranks: &Ranks) -> Watched {
+        let mut told = Vec::new();
+        ranks.broadcast(&mut told);
+        let (nodes, points) = told[1..].split_at(told[0] as usize);
+        let nodes = nodes.iter().map(|node| system.number[*node as usize]);
+        Watched {
+            nodes: nodes.filter(|node| *node != u32::MAX).collect(),
+            points: points.iter().map(|point| *point as u32).collect(),
+        }
+    }
+}
+
 impl Scope {
     /// From its number.
     pub(crate) fn of(number: f64) -> Scope {

@@ -17,12 +17,12 @@ use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::massless::redistribute;
-use crate::middles::add_middles;
+use crate::middles::{Carried, add_middles};
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
 use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
-use crate::numbering::numbering;
+use crate::numbering::{Numbering, numbering};
 use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::system::{System, part_of};
@@ -72,12 +72,26 @@ impl System {
     }
 
     fn assemble(mut model: Model) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
-        model.remove_penetrations()?;
+        let nodes = Nodes::of(&mut model)?;
+        System::assemble_on(model, nodes)
+    }
+
+    /// The system of a model on these nodes.
+    pub(crate) fn assemble_on(
+        model: Model,
+        nodes: Nodes,
+    ) -> Result<(System, Vec<ModelBody>, Vec<ModelContact>), Error> {
         let dim = model.mesh.dim;
-        let centres = add_centres(&mut model);
-        let carried = add_middles(&mut model)?;
-        model.mesh.shrink_to_fit();
-        let (number, mesh_node, parts) = numbering(&model, &centres, &carried);
+        let Nodes {
+            centres,
+            carried,
+            numbering,
+        } = nodes;
+        let Numbering {
+            number,
+            mesh_node,
+            parts,
+        } = numbering;
         let x: Vec<[f64; 3]> = mesh_node
             .iter()
             .map(|&node| model.mesh.nodes[node as usize])
@@ -290,6 +304,32 @@ impl System {
             mesh: Arc::new(model.mesh),
         };
         Ok((system, model.bodies, model.contacts))
+    }
+}
+
+/// The nodes of a system.
+pub(crate) struct Nodes {
+    /// Those of the rigid and reduced bodies.
+    centres: Vec<Option<u32>>,
+    carried: Vec<Carried>,
+    pub(crate) numbering: Numbering,
+}
+
+impl Nodes {
+    /// Those of a model, which is given the ones that its mesh does not have; initial penetrations are removed.
+    ///
+    /// # Errors
+    /// Penetrations that are left, a body of cells that no shell can be built on.
+    pub(crate) fn of(model: &mut Model) -> Result<Nodes, Error> {
+        model.remove_penetrations()?;
+        let centres = add_centres(model);
+        let carried = add_middles(model)?;
+        model.mesh.shrink_to_fit();
+        Ok(Nodes {
+            numbering: numbering(model, &centres, &carried),
+            centres,
+            carried,
+        })
     }
 }
 

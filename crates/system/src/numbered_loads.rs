@@ -185,10 +185,9 @@ fn numbered_force(
             let unit = |x: &[f64; 3]| kinematics.surface_factor(x);
             let areas = load.surface.node_areas(&model.mesh, unit);
             let mut forces = Vec::new();
-            for (&node, area) in load.surface.nodes.iter().zip(areas) {
-                let own = unknowns
-                    .translations_of(number[node as usize])
-                    .zip(traction);
+            let nodes = load.surface.nodes.iter().map(|node| number[*node as usize]);
+            for (node, area) in nodes.zip(areas).filter(|(node, _)| *node != u32::MAX) {
+                let own = unknowns.translations_of(node).zip(traction);
                 forces.extend(own.map(|(unknown, t)| (unknown as u32, area * t)));
             }
             NumberedForce::Dead(forces)

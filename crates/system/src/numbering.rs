@@ -11,13 +11,39 @@ use crate::model::Model;
 /// Nodes of a box, about.
 const NODES: usize = 1024;
 
-/// System numbers of the mesh nodes, mesh nodes of the system numbers, and node ranges of the connected parts. `centres`: nodes of
-/// the rigid bodies.
+/// The numbers of the nodes of a system.
+pub(crate) struct Numbering {
+    /// System numbers of the mesh nodes; `u32::MAX` where no body uses one.
+    pub(crate) number: Vec<u32>,
+    /// Mesh nodes of the system numbers.
+    pub(crate) mesh_node: Vec<u32>,
+    /// Nodes of the connected parts.
+    pub(crate) parts: Vec<Range<usize>>,
+}
+
+impl Numbering {
+    /// Leaves out all nodes of the mesh but some. The others stay in their order.
+    pub(crate) fn keep(&mut self, has: &[bool]) {
+        let kept = |node: &u32| has[*node as usize];
+        for part in &mut self.parts {
+            let before = |end: usize| self.mesh_node[..end].iter().filter(|node| kept(node)).count();
+            *part = before(part.start)..before(part.end);
+        }
+        self.mesh_node.retain(kept);
+        self.mesh_node.shrink_to_fit();
+        self.number.fill(u32::MAX);
+        for (&node, number) in self.mesh_node.iter().zip(0..) {
+            self.number[node as usize] = number;
+        }
+    }
+}
+
+/// `centres`: nodes of the rigid bodies.
 pub(crate) fn numbering(
     model: &Model,
     centres: &[Option<u32>],
     carried: &[Carried],
-) -> (Vec<u32>, Vec<u32>, Vec<Range<usize>>) {
+) -> Numbering {
     let count = model.mesh.nodes.len();
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
     let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);
@@ -67,11 +93,11 @@ pub(crate) fn numbering(
             _ => parts.push(system..system + 1),
         }
     }
-    (
+    Numbering {
         number,
-        nodes.into_iter().map(|(_, node)| node).collect(),
+        mesh_node: nodes.into_iter().map(|(_, node)| node).collect(),
         parts,
-    )
+    }
 }
 
 /// The box of each node of an explicit system with many: steps walk over the nodes, and what is near in space is then near in memory, on

@@ -7,16 +7,42 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::unknowns::Unknowns;
-use carom_bodies::Body;
+use carom_bodies::{Body, Solid, by_kind};
+use carom_mesh::ElementId;
 
+use crate::build::Nodes;
+use crate::error::Error;
 use crate::levers::{Lever, Levers};
 use crate::mass::Mass;
+use crate::model::{Model, ModelTarget};
 use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::numbered_loads::{NumberedForce, NumberedLoad};
 use crate::reported::{HeldUnknown, ReportedSupport};
 use crate::system::System;
 use crate::turning::TurningRows;
+
+/// Nodes of the mesh that elements of a rank have, and those of all contacts; and the first face of each load, whose body gives its thickness.
+fn near(model: &Model, (cells, ranks): (&[Vec<ElementId>], &[Vec<u32>]), rank: u32) -> Vec<bool> {
+    let mesh = &model.mesh;
+    let mut near = vec![false; mesh.nodes.len()];
+    let mut mark = |nodes: &[u32]| nodes.iter().for_each(|node| near[*node as usize] = true);
+    for (cells, ranks) in cells.iter().zip(ranks) {
+        let own = cells.iter().zip(ranks).filter(|(_, of)| **of == rank);
+        own.for_each(|(cell, _)| mark(mesh.element_nodes(*cell)));
+    }
+    for contact in &model.contacts {
+        mark(&contact.secondary.nodes);
+        contact.secondary.faces.iter().for_each(|face| mark(face.corners()));
+        if let ModelTarget::Surface(primary) = &contact.primary {
+            primary.faces.iter().for_each(|face| mark(face.corners()));
+        }
+    }
+    let loads = model.nonlinear.loads.iter();
+    let faces = loads.filter_map(|load| load.surface.faces.first());
+    faces.for_each(|face| mark(mesh.element_nodes(face.parent)));
+    near
+}
 
 /// What a rank keeps of a system, by its numbers there.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -96,6 +122,70 @@ impl<'a> Renumbering<'a> {
 }
 
 impl System {
+    /// Of a model whose whole another rank has, the elements of a rank, with those that share a node with them or with a contact: so that
+    /// masses and loads of the nodes of the rank and of all contacts are those of the whole. `ranks`: of the elements of each body, solids in the
+    /// order of [`Solid::cells`](carom_bodies::Solid::cells). With them come the places of the elements of each body in that order.
+    ///
+    /// # Errors
+    /// As [`System::new`], but for what is asked of schemes and masses.
+    pub fn around(
+        mut model: Model,
+        ranks: &[Vec<u32>],
+        rank: u32,
+    ) -> Result<(System, Vec<Vec<u32>>), Error> {
+        let mut nodes = Nodes::of(&mut model)?;
+        let mesh = &model.mesh;
+        let cells = model.bodies.iter().map(|body| by_kind(mesh, &body.spec.cells));
+        let cells: Vec<Vec<ElementId>> = cells.collect();
+        let near = near(&model, (&cells, ranks), rank);
+        let (mut has, mut places) = (vec![false; mesh.nodes.len()], Vec::new());
+        for (body, cells) in model.bodies.iter_mut().zip(cells) {
+            let nodes_of = |place: usize| mesh.element_nodes(cells[place]);
+            let is_near = |place: usize| nodes_of(place).iter().any(|node| near[*node as usize]);
+            // no body is without any
+            let own = (0..cells.len()).filter(|place| *place == 0 || is_near(*place));
+            let own: Vec<usize> = own.collect();
+            for node in own.iter().flat_map(|place| nodes_of(*place)) {
+                has[*node as usize] = true;
+            }
+            body.spec.cells = own.iter().map(|place| cells[*place]).collect();
+            places.push(own.into_iter().map(|place| place as u32).collect());
+        }
+        nodes.numbering.keep(&has);
+        let (system, ..) = System::assemble_on(model, nodes)?;
+        Ok((system, places))
+    }
+
+    /// What its parts are to know of the whole ([`System::know_whole`]), as numbers.
+    pub fn facts_of_whole(&self) -> Vec<f64> {
+        let mut facts = vec![self.nodes_of_whole as f64];
+        facts.extend(self.origin);
+        for (body, diagonal) in self.bodies.iter().zip(&self.diagonals) {
+            let most_nodes = body.as_solid().map_or(1, Solid::most_nodes);
+            facts.extend([body.smallest_size(), most_nodes as f64, *diagonal]);
+        }
+        facts.extend(self.supports.iter().flat_map(|support| support.centre));
+        facts
+    }
+
+    /// Takes what the whole told of itself ([`System::facts_of_whole`]).
+    pub fn know_whole(&mut self, facts: &[f64]) {
+        let mut facts = facts.iter().copied();
+        let mut next = || facts.next().unwrap_or_default();
+        self.nodes_of_whole = next() as usize;
+        self.origin = [0; 3].map(|_| next());
+        for (body, diagonal) in self.bodies.iter_mut().zip(&mut self.diagonals) {
+            let sizes = (next(), next() as usize);
+            if let Body::Solid(solid) = body {
+                solid.know_whole(sizes);
+            }
+            *diagonal = next();
+        }
+        for support in &mut self.supports {
+            support.centre = [0; 3].map(|_| next());
+        }
+    }
+
     /// The part of it that a rank has: of solids whose nodes have translations alone, with lumped mass, without links, damping and unknowns that
     /// follow a function.
     pub fn part(&self, kept: &Kept) -> System {

@@ -3,10 +3,12 @@
 use std::path::PathBuf;
 
 use carom_mesh::{Group, Mesh};
+use carom_zones::LinkKind;
 
 use super::course::Signals;
 use super::plan::Plan;
 use crate::error::Problem;
+use crate::input::Input;
 use crate::schema::{Case, Vector};
 
 /// Collects problems while it builds.
@@ -25,6 +27,31 @@ pub(super) struct Builder<'a> {
     pub(super) folder: PathBuf,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub(super) reductions: Vec<(String, String)>,
+}
+
+impl<'a> Builder<'a> {
+    /// Before anything is built.
+    pub(super) fn new(case: &'a Case, input: &Input) -> Builder<'a> {
+        let mut builder = Builder {
+            case,
+            problems: Vec::new(),
+            warnings: Vec::new(),
+            springs: Vec::new(),
+            signals: Signals::new(),
+            plan: Plan {
+                zones: Vec::new(),
+                kind: LinkKind::GravouilCombescure,
+            },
+            file: input
+                .sources
+                .first()
+                .map_or_else(PathBuf::new, |source| PathBuf::from(&source.name)),
+            folder: input.folder.clone(),
+            reductions: Vec::new(),
+        };
+        builder.plan = builder.plan_zones();
+        builder
+    }
 }
 
 impl Builder<'_> {

@@ -46,12 +46,11 @@ mod turning;
 mod unfit;
 mod zones;
 
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use carom_dynamics::{Model, Nonlinear, System};
 use carom_output::{LevelSettings, Spectrum};
-use carom_zones::{LinkKind, Zoned};
+use carom_zones::Zoned;
 
 use crate::error::Problem;
 use crate::input::Input;
@@ -60,9 +59,8 @@ use crate::schema::{Case, Motion};
 
 pub use added::AddedForce;
 pub use arlequin::BuiltOverlap;
+use arlequin::Joints;
 use builder::{Builder, dimensions, plural};
-use course::Signals;
-use plan::Plan;
 pub use reference::ExactReference;
 use time::Size;
 
@@ -91,6 +89,25 @@ pub struct Built {
     pub warnings: Vec<String>,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub reductions: Vec<(String, String)>,
+}
+
+impl Built {
+    /// What another rank than the first has of a case to the time `end` (s): its part of the system.
+    pub(crate) fn beside(system: Arc<System>, end: f64) -> Built {
+        Built {
+            system,
+            zoned: None,
+            apart: false,
+            overlaps: Vec::new(),
+            end,
+            stage: None,
+            levels: Vec::new(),
+            probes: Vec::new(),
+            reference: None,
+            warnings: Vec::new(),
+            reductions: Vec::new(),
+        }
+    }
 }
 
 /// A probe with its nodes.
@@ -126,24 +143,7 @@ pub fn build_with(
     (case, locator, input): (&Case, &Locator, &Input),
     forces: &[AddedForce],
 ) -> Result<Built, Vec<Problem>> {
-    let mut builder = Builder {
-        case,
-        problems: Vec::new(),
-        warnings: Vec::new(),
-        springs: Vec::new(),
-        signals: Signals::new(),
-        plan: Plan {
-            zones: Vec::new(),
-            kind: LinkKind::GravouilCombescure,
-        },
-        file: input
-            .sources
-            .first()
-            .map_or_else(PathBuf::new, |source| PathBuf::from(&source.name)),
-        folder: input.folder.clone(),
-        reductions: Vec::new(),
-    };
-    builder.plan = builder.plan_zones();
+    let mut builder = Builder::new(case, input);
     let built = builder.build(input, forces);
     match built {
         Some(built) if builder.problems.is_empty() => Ok(built),
@@ -151,8 +151,30 @@ pub fn build_with(
     }
 }
 
+/// The model of a case without zones, for another rank than the first, which builds its part of it ([`Driver::beside`](carom_dynamics::Driver::beside)).
+/// Its step is not known.
+///
+/// # Errors
+/// As [`build`], but for what the system tells.
+pub fn model(case: &Case, locator: &Locator, input: &Input) -> Result<Model, Vec<Problem>> {
+    let mut builder = Builder::new(case, input);
+    let modelled = builder.model(input, &[]);
+    match modelled {
+        Some(modelled) if builder.problems.is_empty() => Ok(builder.in_one(modelled.model)),
+        _ => Err(locator.locate_all(builder.problems)),
+    }
+}
+
+/// A model, and what is built of a case beside it.
+struct Modelled {
+    model: Model,
+    probes: Vec<BuiltProbe>,
+    joints: Joints,
+}
+
 impl Builder<'_> {
-    fn build(&mut self, input: &Input, forces: &[AddedForce]) -> Option<Built> {
+    /// The model, without its step.
+    fn model(&mut self, input: &Input, forces: &[AddedForce]) -> Option<Modelled> {
         self.signals = self.signals(input);
         let materials = self.materials();
         self.schemes();
@@ -227,22 +249,38 @@ impl Builder<'_> {
         };
         self.reduce(&mut model, &joints.links, &input.folder);
         self.damp_modes(&mut model);
-        if !self.problems.is_empty() {
-            return None;
-        }
+        self.problems.is_empty().then_some(Modelled {
+            model,
+            probes,
+            joints,
+        })
+    }
+
+    /// The model of a case without zones as its steps need it, but for their size.
+    fn in_one(&mut self, mut model: Model) -> Model {
+        let nonlinear = vec![model.is_nonlinear(); model.contacts.len()];
+        self.default_sliding(&mut model.contacts, &nonlinear);
+        model.critical_fraction = match self.size() {
+            (_, Size::Critical(fraction)) => Some(fraction),
+            _ => None,
+        };
+        model
+    }
+
+    fn build(&mut self, input: &Input, forces: &[AddedForce]) -> Option<Built> {
+        let Modelled {
+            mut model,
+            probes,
+            joints,
+        } = self.model(input, forces)?;
         let nodes = model.mesh.nodes.clone();
         let mut zoned = None;
         if self.plan.zones.is_empty() {
-            let nonlinear = vec![model.is_nonlinear(); model.contacts.len()];
-            self.default_sliding(&mut model.contacts, &nonlinear);
+            model = self.in_one(model);
             model.dt = self.step(&model.mesh, &model.bodies, || {
                 Ok(vec![System::new(model.clone())?])
             })?;
             model.adaptive = self.adaptive(model.dt);
-            model.critical_fraction = match self.size() {
-                (_, Size::Critical(fraction)) => Some(fraction),
-                _ => None,
-            };
         } else {
             let mut parts = Zoned {
                 model: model.clone(),

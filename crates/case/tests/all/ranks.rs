@@ -3,8 +3,10 @@
 use std::cell::Cell;
 use std::path::Path;
 
+use carom_case::schema::Case;
 use carom_case::{
-    Built, Failed, Finished, Input, Resume, build, parse, run, run_on_ranks, whole_on_ranks,
+    Built, Failed, Finished, Input, Locator, Resume, build, model, parse, run, run_on_ranks,
+    whole_on_ranks,
 };
 use carom_dynamics::{ContactRecord, Driver, State, Watched};
 use carom_output::checkpoint;
@@ -114,9 +116,14 @@ pub fn block(material: &str) -> String {
     BLOCK.replace("MATERIAL", material)
 }
 
-pub fn built(text: &str) -> (Input, carom_case::schema::Case, Built) {
+fn read(text: &str) -> (Input, Case, Locator) {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap_or_else(|problems| panic!("{problems:?}"));
+    (input, case, locator)
+}
+
+pub fn built(text: &str) -> (Input, Case, Built) {
+    let (input, case, locator) = read(text);
     let built = build(&case, &locator, &input).unwrap_or_else(|problems| panic!("{problems:?}"));
     (input, case, built)
 }
@@ -138,8 +145,13 @@ pub fn on_all<T: Send>(count: usize, work: impl Fn(&Ranks) -> T + Sync) -> Vec<T
 
 /// What takes the steps of a case on a rank.
 pub fn driver_on(ranks: &Ranks, text: &str) -> Driver {
-    let (_, _, mut built) = built(text);
-    Driver::on_ranks(&mut built.system, None, ranks, Watched::default()).unwrap()
+    let (input, case, locator) = read(text);
+    if ranks.is_first() {
+        let system = build(&case, &locator, &input).unwrap().system;
+        return Driver::on_ranks(system, None, ranks, &Watched::default()).unwrap();
+    }
+    let model = model(&case, &locator, &input).unwrap();
+    Driver::beside(model, ranks).unwrap().0
 }
 
 /// Runs a case on so many ranks, with the end of each.
@@ -150,9 +162,12 @@ pub fn run_on(
     steps: u64,
 ) -> Vec<Result<Option<Finished>, Failed>> {
     on_all(count, |ranks| {
-        let (input, case, mut built) = built(text);
-        let parts = (&input, &case, &mut built);
-        run_on_ranks(ranks, parts, folder.to_owned(), &mut Nobody, &after(steps))
+        let (input, case, locator) = read(text);
+        let first = ranks.is_first();
+        let built = first.then(|| build(&case, &locator, &input).unwrap());
+        let read = (&input, &case, &locator);
+        let folder = folder.to_owned();
+        run_on_ranks(ranks, read, built, folder, &mut Nobody, &after(steps))
     })
 }
 

@@ -22,7 +22,7 @@ use crate::shared::{
     Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive,
 };
 use crate::state::State;
-use crate::system::System;
+use crate::system::{Model, System};
 use crate::update::Sums;
 
 /// What one of several ranks has of a run, and sends to others.
@@ -47,44 +47,57 @@ pub struct RankShare {
 }
 
 impl Driver {
-    /// What takes the steps on one of several ranks, from the start or from a `saved` state ([`State::to_bytes`]). Ranks share the elements of
-    /// explicit steps that can be shared ([`why_not_on_ranks`](crate::why_not_on_ranks)): on other ranks than the first `system` is then the part of it
-    /// that the rank has. Of others they share the products of iterations, while each rank takes all of the step ([`Alike`](crate::Alike)). All
-    /// ranks ask together.
+    /// What takes the steps on the first of several ranks, from the start or from a `saved` state ([`State::to_bytes`]): it has the whole system, and
+    /// computes a part of its elements. The others ask with [`Driver::beside`]. For steps whose elements can be shared
+    /// ([`why_not_on_ranks`](crate::why_not_on_ranks)).
     ///
     /// # Errors
-    /// [`Error::Partition`]; as [`Driver::new`], of the first rank on all.
+    /// [`Error::Partition`]; as [`Driver::new`]; that another rank cannot build its part.
     pub fn on_ranks(
-        system: &mut Arc<System>,
+        system: Arc<System>,
         saved: Option<&[u8]>,
         ranks: &Ranks,
-        mut watched: Watched,
+        watched: &Watched,
     ) -> Result<Driver, Error> {
-        let shares = super::unfit::why_not_on_ranks(system).is_none();
-        if ranks.count() == 1 || !shares {
-            let mut driver = Driver::from_saved(system, saved)?;
-            driver.effective.share(ranks);
-            return Ok(driver);
-        }
-        let begin = Begin::new(system, ranks)?;
-        let begun = match ranks.is_first() {
-            true => Driver::from_saved(system, saved).map(Some),
-            false => Ok(None),
-        };
-        let (mut driver, own) = match (of_all(ranks, begun)?, ranks.rank()) {
-            (Some(mut driver), _) => {
-                let given = begin.give((system, ranks), &mut driver.state);
-                of_all(ranks, given)?;
-                (driver, begin.of_first())
-            }
-            (None, rank) => {
-                let own = begin.of_other(rank, system, &mut watched);
-                let driver = receive(system, ranks)
-                    .and_then(|state| Driver::resume(Arc::clone(system), state));
-                (of_all(ranks, driver)?, own)
-            }
-        };
+        let begun = Begin::first(&system, ranks)
+            .and_then(|begin| Ok((begin, Driver::from_saved(&system, saved)?)));
+        let (begin, mut driver) = of_all(ranks, begun)?;
+        watched.give(&system, ranks);
+        let given = begin.give((&system, ranks), &mut driver.state);
+        of_all(ranks, given)?;
+        driver.share(ranks, (watched, begin.of_first()));
+        Ok(driver)
+    }
+
+    /// The same on another rank, which has the part of the system that its elements and all contacts have, and the first one's state of it. The step
+    /// of the model is that of the first one. With it comes the system.
+    ///
+    /// # Errors
+    /// As [`Driver::on_ranks`], on all ranks.
+    pub fn beside(model: Model, ranks: &Ranks) -> Result<(Driver, Arc<System>), Error> {
+        let (around, begin) = of_all(ranks, Begin::other(model, ranks))?;
+        let (system, own) = begin.of_other(ranks.rank(), &around);
+        drop(around);
+        let watched = Watched::receive(&system, ranks);
+        let driver = receive(&system, ranks)
+            .and_then(|state| Driver::resume(Arc::clone(&system), state));
+        let mut driver = of_all(ranks, driver)?;
         driver.share(ranks, (&watched, own));
+        Ok((driver, system))
+    }
+
+    /// What takes the steps from the start, or from a saved state, where ranks share the products of iterations alone: each takes all of the steps
+    /// ([`Alike`](crate::Alike)).
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn alike(
+        system: &Arc<System>,
+        saved: Option<&[u8]>,
+        ranks: &Ranks,
+    ) -> Result<Driver, Error> {
+        let mut driver = Driver::from_saved(system, saved)?;
+        driver.effective.share(ranks);
         Ok(driver)
     }
 

@@ -1,7 +1,7 @@
 //! How ranks begin: the first one with the whole system and its state, each other with the part of both that it has.
 //!
-//! All ranks build the whole system, find the same partition of its elements, and know from it what each of them keeps. The first one then begins the
-//! run, anew or from a checkpoint, and gives each other the part of the state that belongs to its nodes and elements.
+//! The first rank shares the elements out, and begins the run, anew or from a checkpoint. Each other builds its part of the system from the model, with
+//! what the first one tells it of the whole, and is given the part of the state that belongs to its nodes and elements.
 
 use std::sync::Arc;
 
@@ -9,11 +9,10 @@ use carom_bodies::{Looks, Solid};
 use carom_ranks::{Message, Ranks};
 
 use super::halo::{AtNodes, contact_nodes};
-use super::parts::{Partition, SharedNodes, partition_of};
+use super::parts::{Partition, SharedNodes, ask};
 use crate::error::Error;
-use crate::march::Watched;
 use crate::state::State;
-use crate::system::{Kept, Motion, System};
+use crate::system::{Kept, Model, Motion, System};
 
 /// The elements of the bodies that a rank has, and who has their nodes.
 pub(crate) struct Own {
@@ -35,31 +34,78 @@ impl Own {
     }
 }
 
-/// Who has what of a system that is still whole on all ranks.
+/// Who has what of a system: of the whole on the first rank; on another one of the part [around](System::around) its elements.
 pub(crate) struct Begin {
     partition: Partition,
     at_nodes: AtNodes,
     /// Nodes at which any contact looks, ascending.
     of_contacts: Vec<u32>,
+    /// Places of the elements of each body among those of the whole body; none on the first rank.
+    places: Option<Vec<Vec<u32>>>,
+    /// What the first one has told another rank of the whole.
+    facts: Vec<f64>,
 }
 
 impl Begin {
-    /// All ranks ask together.
+    /// On the first rank, which tells the others what they need to know.
     ///
     /// # Errors
     /// [`Error::Partition`].
-    pub(crate) fn new(system: &System, ranks: &Ranks) -> Result<Begin, Error> {
-        let partition = partition_of(system, ranks)?;
+    pub(crate) fn first(system: &System, ranks: &Ranks) -> Result<Begin, Error> {
+        let partition = Partition::of(system, ranks);
+        // others are given something after an error too: they ask for it
+        let mut told = Vec::new();
+        if let Ok(partition) = &partition {
+            let facts = system.facts_of_whole();
+            told.extend([system.dt, facts.len() as f64]);
+            told.extend(facts);
+            told.extend(partition.numbers());
+        }
+        ranks.broadcast(&mut told);
+        Ok(Begin::new(system, partition?, None, Vec::new()))
+    }
+
+    /// On another rank, with its elements and those around them.
+    ///
+    /// # Errors
+    /// As [`Begin::first`]; a part that cannot be built.
+    pub(crate) fn other(mut model: Model, ranks: &Ranks) -> Result<(System, Begin), Error> {
+        let asked = ask(ranks);
+        let mut told = Vec::new();
+        ranks.broadcast(&mut told);
+        asked?;
+        let [dt, count, told @ ..] = &told[..] else {
+            return Err(Error::Partition("the first rank has none".into()));
+        };
+        let (facts, parts) = told.split_at(*count as usize);
+        let mut partition = Partition::of_numbers(parts);
+        model.dt = *dt;
+        let (system, places) = System::around(model, &partition.of_bodies, ranks.rank() as u32)?;
+        for (parts, places) in partition.of_bodies.iter_mut().zip(&places) {
+            *parts = places.iter().map(|place| parts[*place as usize]).collect();
+        }
+        let begin = Begin::new(&system, partition, Some(places), facts.to_vec());
+        Ok((system, begin))
+    }
+
+    fn new(
+        system: &System,
+        partition: Partition,
+        places: Option<Vec<Vec<u32>>>,
+        facts: Vec<f64>,
+    ) -> Begin {
         let mut of_contacts = contact_nodes(system, |_| true);
         let faces = system.secondary_faces.iter().flatten();
         of_contacts.extend(faces.flat_map(|face| face.corners()));
         of_contacts.sort_unstable();
         of_contacts.dedup();
-        Ok(Begin {
+        Begin {
             at_nodes: AtNodes::new(system, &partition.of_bodies),
             partition,
             of_contacts,
-        })
+            places,
+            facts,
+        }
     }
 
     /// What another rank than the first keeps.
@@ -90,25 +136,27 @@ impl Begin {
         }
     }
 
-    /// The elements of another rank. `system` becomes its part, and `watched` what of it is watched.
-    pub(crate) fn of_other(
-        self,
-        rank: usize,
-        system: &mut Arc<System>,
-        watched: &mut Watched,
-    ) -> Own {
+    /// On another rank, its part of the system without the elements around, and its elements.
+    pub(crate) fn of_other(self, rank: usize, around: &System) -> (Arc<System>, Own) {
         let kept = self.kept(rank);
-        *system = Arc::new(system.part(&kept));
-        let nodes = watched.nodes.iter();
-        let own = nodes.filter_map(|node| kept.nodes.binary_search(node).ok());
-        watched.nodes = own.map(|node| node as u32).collect();
-        let count = |places: &Vec<u32>| vec![rank as u32; places.len()];
-        Own {
-            ranks: kept.elements.iter().map(count).collect(),
+        let mut system = around.part(&kept);
+        system.know_whole(&self.facts);
+        let own = kept.elements.iter().zip(self.places.iter().flatten());
+        let in_whole = |(own, places): (&Vec<u32>, &Vec<u32>)| {
+            let own = own.iter().map(|place| places[*place as usize]);
+            own.collect()
+        };
+        let own = Own {
+            places: Some(own.map(in_whole).collect()),
+            ranks: kept
+                .elements
+                .iter()
+                .map(|places| vec![rank as u32; places.len()])
+                .collect(),
             at_nodes: self.at_nodes.some(&kept.nodes),
             shared_nodes: self.partition.shared,
-            places: Some(kept.elements),
-        }
+        };
+        (Arc::new(system), own)
     }
 
     /// Gives the other ranks their parts of the state of the first one, this.

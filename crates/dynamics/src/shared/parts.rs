@@ -1,6 +1,6 @@
 //! Which elements are whose.
 
-use carom_ranks::{Graph, Ranks, partition};
+use carom_ranks::{Graph, Message, Ranks, partition};
 
 use crate::error::Error;
 use crate::system::System;
@@ -90,9 +90,8 @@ impl Elements {
     }
 
     /// Own elements of a rank, and which elements have a face in common with each: as many nodes as there are dimensions.
-    fn graph(&self, system: &System, ranks: &Ranks) -> Graph {
-        let starts = ranks.starts(self.cost.len());
-        let own = starts[ranks.rank()]..starts[ranks.rank() + 1];
+    fn graph(&self, system: &System, starts: Vec<usize>, rank: usize) -> Graph {
+        let own = starts[rank]..starts[rank + 1];
         let (mut offsets, mut neighbours) = (vec![0], Vec::new());
         let mut common = Vec::new();
         for element in own.clone() {
@@ -131,38 +130,118 @@ impl Elements {
     }
 }
 
-/// The rank of each element of each body, the same in every process: parts of equal cost, by planes or, where that shares fewer nodes, by the
-/// library for graphs that the ranks have.
+impl Partition {
+    /// On the first rank, which has the whole system: parts of equal cost, by planes or, where that shares fewer nodes, by the library for graphs
+    /// that the ranks have. The others ask with [`ask`].
+    ///
+    /// # Errors
+    /// What the library says.
+    pub(crate) fn of(system: &System, ranks: &Ranks) -> Result<Partition, Error> {
+        let elements = Elements::new(system);
+        let mut parts = partition(&elements.centres(system), &elements.cost, ranks.count());
+        let mut shared = SharedNodes {
+            by_planes: elements.shared(&parts),
+            by_graph: None,
+        };
+        if ranks.has_engine() {
+            let starts = ranks.starts(elements.cost.len());
+            for rank in 1..ranks.count() {
+                give(ranks, rank, &elements.graph(system, starts.clone(), rank));
+            }
+            let graph = elements.graph(system, starts, 0);
+            if let Some(found) = ranks.parts_of_graph(&graph).map_err(Error::Partition)? {
+                shared.by_graph = Some(elements.shared(&found));
+                if shared.is_by_graph() {
+                    parts = found;
+                }
+            }
+        }
+        let mut rest = &parts[..];
+        let of_bodies = elements.counts.iter().map(|&count| {
+            let (own, others) = rest.split_at(count);
+            rest = others;
+            own.to_vec()
+        });
+        Ok(Partition {
+            of_bodies: of_bodies.collect(),
+            shared,
+        })
+    }
+
+    /// As numbers, for the other ranks.
+    pub(crate) fn numbers(&self) -> Vec<f64> {
+        let SharedNodes { by_planes, by_graph } = self.shared;
+        let by_graph = by_graph.map_or(-1.0, |count| count as f64);
+        let mut numbers = vec![by_planes as f64, by_graph, self.of_bodies.len() as f64];
+        numbers.extend(self.of_bodies.iter().map(|parts| parts.len() as f64));
+        let parts = self.of_bodies.iter().flatten();
+        numbers.extend(parts.map(|part| f64::from(*part)));
+        numbers
+    }
+
+    /// The reverse.
+    pub(crate) fn of_numbers(numbers: &[f64]) -> Partition {
+        let (counts, mut parts) = numbers[3..].split_at(numbers[2] as usize);
+        let of_bodies = counts.iter().map(|&count| {
+            let (own, others) = parts.split_at(count as usize);
+            parts = others;
+            own.iter().map(|part| *part as u32).collect()
+        });
+        Partition {
+            of_bodies: of_bodies.collect(),
+            shared: SharedNodes {
+                by_planes: numbers[0] as usize,
+                by_graph: (numbers[1] >= 0.0).then_some(numbers[1] as usize),
+            },
+        }
+    }
+}
+
+/// Lets the library share out the elements, on another rank than the first, which has [`Partition::of`] it.
 ///
 /// # Errors
 /// What the library says.
-pub(crate) fn partition_of(system: &System, ranks: &Ranks) -> Result<Partition, Error> {
-    let elements = Elements::new(system);
-    let count = ranks.count();
-    let mut parts = partition(&elements.centres(system), &elements.cost, count);
-    let mut shared = SharedNodes {
-        by_planes: elements.shared(&parts),
-        by_graph: None,
-    };
+pub(crate) fn ask(ranks: &Ranks) -> Result<(), Error> {
     if ranks.has_engine() {
-        let graph = elements.graph(system, ranks);
-        if let Some(found) = ranks.parts_of_graph(&graph).map_err(Error::Partition)? {
-            shared.by_graph = Some(elements.shared(&found));
-            if shared.is_by_graph() {
-                parts = found;
-            }
-        }
+        let graph = receive(ranks);
+        ranks.parts_of_graph(&graph).map_err(Error::Partition)?;
     }
-    let mut rest = &parts[..];
-    let of_bodies = elements.counts.iter().map(|&count| {
-        let (own, others) = rest.split_at(count);
-        rest = others;
-        own.to_vec()
-    });
-    Ok(Partition {
-        of_bodies: of_bodies.collect(),
-        shared,
-    })
+    Ok(())
+}
+
+/// Gives another rank its elements of a graph.
+fn give(ranks: &Ranks, with: usize, graph: &Graph) {
+    let numbers = |numbers: &[i32]| -> Vec<f64> { numbers.iter().copied().map(f64::from).collect() };
+    let lists = [&graph.offsets, &graph.neighbours, &graph.weights].map(|list| numbers(list));
+    let mut values: Vec<f64> = graph.starts.iter().map(|start| *start as f64).collect();
+    values.extend(lists.iter().map(|list| list.len() as f64));
+    ranks.exchange(&[Message { with, values }], &mut [], || ());
+    let values = lists.concat();
+    ranks.exchange(&[Message { with, values }], &mut [], || ());
+}
+
+/// What the first rank gives so.
+fn receive(ranks: &Ranks) -> Graph {
+    let next = |count: usize| {
+        let mut message = [Message {
+            with: 0,
+            values: vec![0.0; count],
+        }];
+        ranks.exchange(&[], &mut message, || ());
+        let [message] = message;
+        message.values
+    };
+    let mut starts: Vec<usize> = next(ranks.count() + 4).iter().map(|x| *x as usize).collect();
+    let lengths = starts.split_off(ranks.count() + 1);
+    let values = next(lengths.iter().sum());
+    let mut values = values.iter().map(|value| *value as i32);
+    let mut list = |length: usize| values.by_ref().take(length).collect();
+    Graph {
+        offsets: list(lengths[0]),
+        neighbours: list(lengths[1]),
+        weights: list(lengths[2]),
+        starts,
+    }
 }
 
 /// Who has which elements.
