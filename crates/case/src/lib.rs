@@ -36,7 +36,9 @@ mod sweep;
 mod tree;
 mod validate;
 
-pub use build::{AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_with, model};
+pub use build::{
+    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_with, model,
+};
 pub use compare::{Choices, compare};
 pub use convert::{NotConverted, convert};
 pub use error::{Place, Problem};

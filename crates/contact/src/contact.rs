@@ -141,7 +141,10 @@ impl Contact {
         Contact {
             name: self.name.clone(),
             points: points.map(|point| point.renumbered(&number)).collect(),
-            mortar: self.mortar.as_ref().map(|mortar| mortar.with_faces(of_all(&mortar.faces))),
+            mortar: self
+                .mortar
+                .as_ref()
+                .map(|mortar| mortar.with_faces(of_all(&mortar.faces))),
             target: match &self.target {
                 Target::Surface(faces) => Target::Surface(of_all(faces)),
                 Target::Rigid(obstacle) => Target::Rigid(obstacle.clone()),

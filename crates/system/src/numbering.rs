@@ -26,7 +26,12 @@ impl Numbering {
     pub(crate) fn keep(&mut self, has: &[bool]) {
         let kept = |node: &u32| has[*node as usize];
         for part in &mut self.parts {
-            let before = |end: usize| self.mesh_node[..end].iter().filter(|node| kept(node)).count();
+            let before = |end: usize| {
+                self.mesh_node[..end]
+                    .iter()
+                    .filter(|node| kept(node))
+                    .count()
+            };
             *part = before(part.start)..before(part.end);
         }
         self.mesh_node.retain(kept);
@@ -39,11 +44,7 @@ impl Numbering {
 }
 
 /// `centres`: nodes of the rigid bodies.
-pub(crate) fn numbering(
-    model: &Model,
-    centres: &[Option<u32>],
-    carried: &[Carried],
-) -> Numbering {
+pub(crate) fn numbering(model: &Model, centres: &[Option<u32>], carried: &[Carried]) -> Numbering {
     let count = model.mesh.nodes.len();
     let cells = model.bodies.iter().flat_map(|body| &body.spec.cells);
     let discrete = model.discrete.iter().flat_map(|some| &some.spec.cells);

@@ -33,7 +33,11 @@ fn near(model: &Model, (cells, ranks): (&[Vec<ElementId>], &[Vec<u32>]), rank: u
     }
     for contact in &model.contacts {
         mark(&contact.secondary.nodes);
-        contact.secondary.faces.iter().for_each(|face| mark(face.corners()));
+        contact
+            .secondary
+            .faces
+            .iter()
+            .for_each(|face| mark(face.corners()));
         if let ModelTarget::Surface(primary) = &contact.primary {
             primary.faces.iter().for_each(|face| mark(face.corners()));
         }
@@ -135,7 +139,10 @@ impl System {
     ) -> Result<(System, Vec<Vec<u32>>), Error> {
         let mut nodes = Nodes::of(&mut model)?;
         let mesh = &model.mesh;
-        let cells = model.bodies.iter().map(|body| by_kind(mesh, &body.spec.cells));
+        let cells = model
+            .bodies
+            .iter()
+            .map(|body| by_kind(mesh, &body.spec.cells));
         let cells: Vec<Vec<ElementId>> = cells.collect();
         let near = near(&model, (&cells, ranks), rank);
         let (mut has, mut places) = (vec![false; mesh.nodes.len()], Vec::new());
@@ -224,11 +231,7 @@ impl System {
             part_of_body: self.part_of_body.clone(),
             undeformed: self.undeformed.clone(),
             levers: to.levers(&self.levers),
-            supports: self
-                .supports
-                .iter()
-                .map(|of| of_support(of, &to))
-                .collect(),
+            supports: self.supports.iter().map(|of| of_support(of, &to)).collect(),
             nonlinear: of_nonlinear(&self.nonlinear, &bodies, &to),
             bodies,
             has_springs: self.has_springs,

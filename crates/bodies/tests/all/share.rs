@@ -119,3 +119,31 @@ fn the_looks_of_shares_are_those_of_the_body() {
     }
     assert_eq!(renewed[..2], [true, true]);
 }
+
+/// Of a body of hexahedra and tetrahedra also shares with one of the two give as many numbers of each element, and take them.
+#[test]
+fn looks_of_shares_with_one_kind_of_a_body_of_two_are_those_of_the_body() {
+    let law = Law::NeoHooke(NeoHooke { initial: MATERIAL });
+    let mut two = generate::box_("b", [0.0; 3], [1.0; 3], [2; 3], false);
+    let tetrahedra = generate::box_("t", [2.0, 0.0, 0.0], [1.0; 3], [2; 3], true);
+    two.merge("t", tetrahedra).unwrap();
+    let sample = Sample::of("two", two, Kinematics::Solid, law, Formulation::Full);
+    let (hexahedra, count) = (8, sample.body.cells().len() as u32);
+    assert!(count > hexahedra);
+    let u = vec![0.0; sample.n];
+    let mut whole = Looks::default();
+    sample.body.look(&at(&u), &mut whole, 0.1).unwrap();
+    let mut gathered = Looks::default();
+    for places in [0..hexahedra, hexahedra..count] {
+        let mut share = sample.body.share(places.collect());
+        let mut own = Looks::default();
+        share.look(&at(&u), &mut own, 0.1).unwrap();
+        for (element, &place) in share.places().iter().enumerate() {
+            let mut numbers = Vec::new();
+            own.push(element, &mut numbers);
+            assert_eq!(Some(numbers.len()), sample.body.numbers_of_look());
+            gathered.take((place as usize, count as usize), &numbers);
+        }
+    }
+    assert_eq!(gathered, whole);
+}

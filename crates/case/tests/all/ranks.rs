@@ -116,7 +116,7 @@ pub fn block(material: &str) -> String {
     BLOCK.replace("MATERIAL", material)
 }
 
-fn read(text: &str) -> (Input, Case, Locator) {
+pub fn read(text: &str) -> (Input, Case, Locator) {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap_or_else(|problems| panic!("{problems:?}"));
     (input, case, locator)

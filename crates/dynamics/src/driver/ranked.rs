@@ -18,9 +18,7 @@ use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::records::ContactRecord;
-use crate::shared::{
-    Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive,
-};
+use crate::shared::{Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive};
 use crate::state::State;
 use crate::system::{Model, System};
 use crate::update::Sums;
@@ -79,8 +77,8 @@ impl Driver {
         let (system, own) = begin.of_other(ranks.rank(), &around);
         drop(around);
         let watched = Watched::receive(&system, ranks);
-        let driver = receive(&system, ranks)
-            .and_then(|state| Driver::resume(Arc::clone(&system), state));
+        let driver =
+            receive(&system, ranks).and_then(|state| Driver::resume(Arc::clone(&system), state));
         let mut driver = of_all(ranks, driver)?;
         driver.share(ranks, (&watched, own));
         Ok((driver, system))

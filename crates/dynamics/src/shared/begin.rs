@@ -311,7 +311,10 @@ impl Arrays {
         let histories = system.bodies.iter().zip(&system.nonlinear.histories);
         for ((body, range), own) in histories.zip(&of.elements) {
             let (mut at, mut own) = (range.start, own.iter().peekable());
-            let kept = body.as_solid().into_iter().flat_map(Solid::kept_of_elements);
+            let kept = body
+                .as_solid()
+                .into_iter()
+                .flat_map(Solid::kept_of_elements);
             for (place, kept) in (0..).zip(kept) {
                 if own.next_if(|own| **own == place).is_some() {
                     self.history[at..at + kept].iter_mut().for_each(&mut *visit);
@@ -336,7 +339,9 @@ impl Arrays {
                 None => visit(looks, (0, 1), 2),
                 Some(numbers) => {
                     let place = |place: &u32| (*place as usize, own.len());
-                    own.iter().map(place).for_each(|place| visit(looks, place, numbers));
+                    own.iter()
+                        .map(place)
+                        .for_each(|place| visit(looks, place, numbers));
                 }
             }
         }

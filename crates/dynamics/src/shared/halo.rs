@@ -88,7 +88,10 @@ impl AtNodes {
             Some([place as u32, part])
         });
         AtNodes {
-            first: nodes.iter().map(|node| self.first[*node as usize]).collect(),
+            first: nodes
+                .iter()
+                .map(|node| self.first[*node as usize])
+                .collect(),
             further: further.collect(),
         }
     }

@@ -28,10 +28,10 @@ use crate::resultant::Resultant;
 use crate::state::State;
 use crate::system::{Motion, System};
 use crate::update::Sums;
+pub(crate) use begin::{Begin, Own as OwnElements, receive};
 use halo::{Halo, contact_nodes, messages, pack, unpack};
 pub(crate) use homes::{Own, Part};
 pub(crate) use in_reach::InReach;
-pub(crate) use begin::{Begin, Own as OwnElements, receive};
 pub use parts::SharedNodes;
 
 /// What a rank has of a run.

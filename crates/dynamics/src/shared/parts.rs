@@ -170,7 +170,10 @@ impl Partition {
 
     /// As numbers, for the other ranks.
     pub(crate) fn numbers(&self) -> Vec<f64> {
-        let SharedNodes { by_planes, by_graph } = self.shared;
+        let SharedNodes {
+            by_planes,
+            by_graph,
+        } = self.shared;
         let by_graph = by_graph.map_or(-1.0, |count| count as f64);
         let mut numbers = vec![by_planes as f64, by_graph, self.of_bodies.len() as f64];
         numbers.extend(self.of_bodies.iter().map(|parts| parts.len() as f64));
@@ -211,7 +214,8 @@ pub(crate) fn ask(ranks: &Ranks) -> Result<(), Error> {
 
 /// Gives another rank its elements of a graph.
 fn give(ranks: &Ranks, with: usize, graph: &Graph) {
-    let numbers = |numbers: &[i32]| -> Vec<f64> { numbers.iter().copied().map(f64::from).collect() };
+    let numbers =
+        |numbers: &[i32]| -> Vec<f64> { numbers.iter().copied().map(f64::from).collect() };
     let lists = [&graph.offsets, &graph.neighbours, &graph.weights].map(|list| numbers(list));
     let mut values: Vec<f64> = graph.starts.iter().map(|start| *start as f64).collect();
     values.extend(lists.iter().map(|list| list.len() as f64));
@@ -231,7 +235,10 @@ fn receive(ranks: &Ranks) -> Graph {
         let [message] = message;
         message.values
     };
-    let mut starts: Vec<usize> = next(ranks.count() + 4).iter().map(|x| *x as usize).collect();
+    let mut starts: Vec<usize> = next(ranks.count() + 4)
+        .iter()
+        .map(|x| *x as usize)
+        .collect();
     let lengths = starts.split_off(ranks.count() + 1);
     let values = next(lengths.iter().sum());
     let mut values = values.iter().map(|value| *value as i32);
