@@ -1,6 +1,6 @@
 //! A run that several processes compute together, in explicit steps.
 //!
-//! The first rank has the whole [`System`], each other its [part](begin): its own elements with their nodes, and those of all contacts. Each computes
+//! The first rank has the whole [`System`], each other [its part](begin): its own elements with their nodes, and those of all contacts. Each computes
 //! the forces of its own elements, the motion of their nodes, and the contact points whose [home](homes) it is; other entries are those of some
 //! earlier step, and nobody reads them. Sums over all
 //! ranks end a step ([`Shared::sum_up`]), so that all have the same ledger and records. The first one has the results: what it needs of the others comes where somebody looks
@@ -8,6 +8,7 @@
 
 mod begin;
 mod contacts;
+mod given;
 pub(crate) mod halo;
 mod homes;
 mod in_reach;
@@ -28,7 +29,8 @@ use crate::resultant::Resultant;
 use crate::state::State;
 use crate::system::{Motion, System};
 use crate::update::Sums;
-pub(crate) use begin::{Begin, Own as OwnElements, receive};
+pub(crate) use begin::{Begin, OwnElements};
+pub(crate) use given::receive;
 use halo::{Halo, contact_nodes, messages, pack, unpack};
 pub(crate) use homes::{Own, Part};
 pub(crate) use in_reach::InReach;
