@@ -110,6 +110,18 @@ fn bodies_that_nothing_joins_are_those_of_one_process_on_several_ranks() {
     compare_on_ranks("plates", PLATES, &[2, 3, 4]);
 }
 
+/// Ranks for which no element is left, and which have none of the nodes of a body.
+#[test]
+fn more_ranks_than_elements_are_one_process() {
+    let few = |text: &str| text.replace("elements = [5, 4, 6]", "elements = [2, 1, 1]");
+    compare_on_ranks("few", &few(&block(METAL)), &[5]);
+    let none = PLATES
+        .replace("elements = [8, 4]", "elements = [1, 1]")
+        .replace("elements = [4, 9]", "elements = [1, 2]")
+        .replace("elements = [3, 5]", "elements = [1, 1]");
+    compare_on_ranks("few plates", &none, &[6]);
+}
+
 /// On two ranks one has the hexahedra and the other the wedges; frequencies are found anew, and gathered for the checkpoint.
 #[test]
 fn a_body_of_two_kinds_of_elements_is_that_of_one_process_on_several_ranks() {
