@@ -8,6 +8,7 @@ use std::ops::Range;
 use carom_algebra::lanes::Lanes;
 use carom_algebra::tensor::Mat3;
 use carom_elements::{Kind, MAX_NODES, Rule};
+use carom_mesh::{ElementId, Mesh};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -344,6 +345,15 @@ impl Block {
             });
         }
     }
+}
+
+/// Cells of a mesh kind by kind, those of one kind in their order: as [`Solid::cells`](crate::Solid::cells) has them.
+pub fn by_kind(mesh: &Mesh, cells: &[ElementId]) -> Vec<ElementId> {
+    let of_kind = |kind: Kind| {
+        let all = cells.iter().copied();
+        all.filter(move |&cell| mesh.kind(cell) == kind)
+    };
+    Kind::ALL.into_iter().flat_map(of_kind).collect()
 }
 
 /// The internal forces of one chunk, by whatever instruction set.

@@ -41,6 +41,7 @@ pub use beam::{
     Beam, BeamAxis, BeamSection, BeamTheory, LAYERS, LargeBeam, Rotations, SectionForces,
     SectionProperties, SectionShape,
 };
+pub use block::by_kind;
 pub use body::Body;
 pub use discrete::{
     Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass, VisitRow,
@@ -65,6 +66,6 @@ pub use shell::{
     shell_defects,
 };
 pub use size::{height, smallest as smallest_size};
-pub use solid::{BodySpec, Solid, by_kind};
+pub use solid::{BodySpec, Solid};
 pub use turning::balanced;
 pub use weights::CellWeights;

@@ -120,6 +120,16 @@ impl Solid {
         part
     }
 
+    /// Nodes of the kind of element that has most of them.
+    pub fn most_nodes(&self) -> usize {
+        self.most_nodes
+    }
+
+    /// Tells a part of a body what is known of the whole: [`Solid::smallest_size`] (m), and [`Solid::most_nodes`].
+    pub fn know_whole(&mut self, (smallest, most_nodes): (f64, usize)) {
+        (self.smallest, self.most_nodes) = (smallest, most_nodes);
+    }
+
     /// Numbers that each element keeps from one step to the next, in the order of [`Solid::cells`], which is that of the history.
     pub fn kept_of_elements(&self) -> impl Iterator<Item = usize> + '_ {
         let blocks = self.blocks.iter();

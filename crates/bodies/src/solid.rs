@@ -11,7 +11,7 @@ use carom_mesh::{ElementId, Mesh};
 
 use crate::Error;
 use crate::bar::Bar;
-use crate::block::{Block, Physics, Visit};
+use crate::block::{Block, Physics, Visit, by_kind};
 use crate::continuum;
 use crate::finite::{BulkViscosity, Finite, Formulation, Shape};
 use crate::flowing::{Fibre, FibreSection, Flowing, Point};
@@ -288,16 +288,6 @@ impl Solid {
     /// Speed of compression waves in m/s.
     pub fn wave_speed(&self) -> f64 {
         self.material.wave_speed(self.kinematics.plane())
-    }
-
-    /// Nodes of the kind of element that has most of them.
-    pub fn most_nodes(&self) -> usize {
-        self.most_nodes
-    }
-
-    /// Tells a part of a body what is known of the whole: [`Solid::smallest_size`] (m), and [`Solid::most_nodes`].
-    pub fn know_whole(&mut self, (smallest, most_nodes): (f64, usize)) {
-        (self.smallest, self.most_nodes) = (smallest, most_nodes);
     }
 
     /// Smallest size of an element over its faces, in m: the h_e of the Courant number c dt / h_e.
@@ -607,13 +597,4 @@ impl Parts<'_> {
         }
         (cells, blocks)
     }
-}
-
-/// Cells of a mesh kind by kind, those of one kind in their order: as [`Solid::cells`] has them.
-pub fn by_kind(mesh: &Mesh, cells: &[ElementId]) -> Vec<ElementId> {
-    let of_kind = |kind: Kind| {
-        let all = cells.iter().copied();
-        all.filter(move |&cell| mesh.kind(cell) == kind)
-    };
-    Kind::ALL.into_iter().flat_map(of_kind).collect()
 }
