@@ -146,7 +146,7 @@ impl Partition {
         if ranks.has_engine() {
             let starts = ranks.starts(elements.cost.len());
             for rank in 1..ranks.count() {
-                give(ranks, rank, &elements.graph(system, starts.clone(), rank));
+                give_graph(ranks, rank, &elements.graph(system, starts.clone(), rank));
             }
             let graph = elements.graph(system, starts, 0);
             if let Some(found) = ranks.parts_of_graph(&graph).map_err(Error::Partition)? {
@@ -206,14 +206,14 @@ impl Partition {
 /// What the library says.
 pub(crate) fn ask(ranks: &Ranks) -> Result<(), Error> {
     if ranks.has_engine() {
-        let graph = receive(ranks);
+        let graph = receive_graph(ranks);
         ranks.parts_of_graph(&graph).map_err(Error::Partition)?;
     }
     Ok(())
 }
 
 /// Gives another rank its elements of a graph.
-fn give(ranks: &Ranks, with: usize, graph: &Graph) {
+fn give_graph(ranks: &Ranks, with: usize, graph: &Graph) {
     let numbers =
         |numbers: &[i32]| -> Vec<f64> { numbers.iter().copied().map(f64::from).collect() };
     let lists = [&graph.offsets, &graph.neighbours, &graph.weights].map(|list| numbers(list));
@@ -225,7 +225,7 @@ fn give(ranks: &Ranks, with: usize, graph: &Graph) {
 }
 
 /// What the first rank gives so.
-fn receive(ranks: &Ranks) -> Graph {
+fn receive_graph(ranks: &Ranks) -> Graph {
     let next = |count: usize| {
         let mut message = [Message {
             with: 0,
