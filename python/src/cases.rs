@@ -133,7 +133,7 @@ pub(crate) fn resume(
     })?;
     let watch = Watch::new(progress);
     let ended = py.detach(|| {
-        let mut shown = Shown(watch.clone(), run.built.end);
+        let mut shown = Shown(watch.clone(), run.end());
         run.run(&mut shown, &|| watch.stops())
     });
     summary(&watch, ended)
