@@ -41,7 +41,7 @@ use crate::terminal::{err, out};
 #[derive(Parser)]
 #[command(name = "carom", version)]
 struct Arguments {
-    /// Number of threads; default: as many as the machine has. Results do not depend on it
+    /// Number of threads; default: as many as the machine has, of several ranks their share. Results do not depend on it
     #[arg(long, value_name = "NUMBER", global = true)]
     threads: Option<NonZeroUsize>,
     /// Messages on stderr: `warn`, or `debug` for factorisations with their reasons, halved steps, and points that change their
@@ -112,6 +112,8 @@ enum Command {
 fn main() -> ExitCode {
     let code = match Arguments::try_parse() {
         Ok(arguments) => obey(arguments),
+        // one of several processes tells what is wrong with their words
+        Err(answer) if ranks::is_another() => u8::try_from(answer.exit_code()).unwrap_or(BAD_INPUT),
         Err(answer) => {
             // `--help` and `--version` are answers too; an error goes to standard error
             let printed = answer.print();

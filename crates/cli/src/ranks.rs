@@ -13,6 +13,13 @@ fn is_started() -> bool {
     STARTED.iter().any(|name| std::env::var_os(name).is_some())
 }
 
+/// Whether a starter of MPI has started this process, and says that it is not the first one.
+pub fn is_another() -> bool {
+    let ranks = ["OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"];
+    let mut ranks = ranks.iter().filter_map(|name| std::env::var(name).ok());
+    is_started() && ranks.next().is_some_and(|rank| rank != "0")
+}
+
 /// Gives `work` the ranks of this run: one, unless `mpirun` has started several. The others than the first tell nothing; `takes`: whether
 /// the command goes on several.
 pub fn with_ranks(takes: bool, work: impl FnOnce(&Ranks) -> u8) -> u8 {
@@ -52,7 +59,7 @@ fn begun(takes: bool, work: impl FnOnce(&Ranks) -> u8) -> u8 {
     if alone || !takes {
         return work(&Ranks::alone());
     }
-    if std::env::var("OMPI_COMM_WORLD_RANK").is_ok_and(|rank| rank != "0") {
+    if is_another() {
         be_silent();
     }
     err!(

@@ -436,6 +436,12 @@ fn scotch_shares_out_a_bar_that_lies_askew() {
         assert!(said.contains("shared out by Scotch"), "{said}");
         assert_same(&work.path().join("alone"), &work.path().join(&results));
     }
+    // as many ranks give the same bits, since the elements are shared out alike
+    let run = ["run", "case.toml", "--results", "again"];
+    let output = mpirun(work.path(), 3, &run).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let bytes = |folder: &str| fs::read(work.path().join(folder).join("histories.csv")).unwrap();
+    assert!(bytes("again") == bytes("3"));
 }
 
 #[cfg(feature = "petsc")]

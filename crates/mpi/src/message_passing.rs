@@ -115,8 +115,8 @@ impl Link for World {
     }
 
     #[cfg(feature = "petsc")]
-    fn parts_of_graph(&self, ranks: &Ranks, graph: &Graph) -> Result<Option<Vec<u32>>, String> {
-        crate::scotch::parts(ranks, graph).map(Some)
+    fn parts_of_graph(&self, graph: &Graph, parts: usize) -> Result<Option<Vec<u32>>, String> {
+        crate::scotch::parts(graph, parts).map(Some)
     }
 
     fn gather(&self, values: &mut [f64], starts: &[usize]) {

@@ -138,7 +138,11 @@ pub(crate) fn told(code: Code) -> Result<(), String> {
             false => CStr::from_ptr(text).to_string_lossy().into_owned(),
         }
     };
-    Err(format!("PETSc: {text}"))
+    // mostly they name what PETSc does not have
+    Err(match std::env::var("PETSC_OPTIONS") {
+        Ok(options) if !options.is_empty() => format!("PETSc: {text} (PETSC_OPTIONS: {options})"),
+        _ => format!("PETSc: {text}"),
+    })
 }
 
 /// A symmetric positive definite matrix whose rows ranks share, with its solver.

@@ -1,4 +1,4 @@
-//! The parts of a graph by PT-Scotch (Chevalier and Pellegrini, 2008), which PETSc calls.
+//! The parts of a graph by PT-Scotch (Chevalier and Pellegrini, 2008), which PETSc calls, in one process.
 
 #![allow(
     unsafe_code,
@@ -8,10 +8,10 @@
 use std::ffi::{c_char, c_int, c_void};
 use std::ptr::null_mut;
 
-use mpi::ffi::MPI_Comm;
+use mpi::ffi::{MPI_Comm, RSMPI_COMM_SELF};
 
-use crate::petsc::{Code, Handle, MatDestroy, PETSC_COMM_WORLD, told};
-use carom_ranks::{Graph, Ranks};
+use crate::petsc::{Code, Handle, MatDestroy, told};
+use carom_ranks::Graph;
 
 unsafe extern "C" {
     fn PetscMallocA(
@@ -34,6 +34,7 @@ unsafe extern "C" {
         matrix: *mut Handle,
     ) -> Code;
     fn MatPartitioningCreate(comm: MPI_Comm, parts: *mut Handle) -> Code;
+    fn MatPartitioningSetNParts(parts: Handle, count: c_int) -> Code;
     fn MatPartitioningSetAdjacency(parts: Handle, graph: Handle) -> Code;
     fn MatPartitioningSetType(parts: Handle, kind: *const c_char) -> Code;
     fn MatPartitioningSetVertexWeights(parts: Handle, weights: *const c_int) -> Code;
@@ -45,22 +46,14 @@ unsafe extern "C" {
     fn ISDestroy(set: *mut Handle) -> Code;
 }
 
-/// The part of each element by PT-Scotch, or by what `-mat_partitioning_type` of `PETSC_OPTIONS` says, in which elements of
-/// different parts share few faces. All ranks ask together.
+/// The part of each element, of `count` parts, by PT-Scotch, or by what `-mat_partitioning_type` of `PETSC_OPTIONS` says, in which elements of
+/// different parts share few faces.
 ///
 /// # Errors
 /// What PETSc says.
-pub fn parts(ranks: &Ranks, graph: &Graph) -> Result<Vec<u32>, String> {
-    let mut of = Partitioning::default();
-    let own = of.apply(graph)?;
-    let all = graph.starts.last().copied().unwrap_or(0);
-    let mut parts = vec![0.0; all];
-    let begin = graph.starts[ranks.rank()];
-    for (part, own) in parts[begin..].iter_mut().zip(own) {
-        *part = f64::from(own);
-    }
-    ranks.gather(&mut parts, &graph.starts);
-    Ok(parts.into_iter().map(|part| part as u32).collect())
+pub fn parts(graph: &Graph, count: usize) -> Result<Vec<u32>, String> {
+    let found = Partitioning::default().apply(graph, count)?;
+    Ok(found.into_iter().map(|part| part as u32).collect())
 }
 
 /// What PETSc has made for a partition.
@@ -81,34 +74,34 @@ impl Default for Partitioning {
 }
 
 impl Partitioning {
-    /// The parts of the own elements.
-    fn apply(&mut self, graph: &Graph) -> Result<Vec<c_int>, String> {
-        let own = graph.weights.len();
-        let all = graph.starts.last().copied().unwrap_or(0);
-        let mut parts = Vec::with_capacity(own);
+    /// The parts of the elements.
+    fn apply(&mut self, graph: &Graph, count: usize) -> Result<Vec<c_int>, String> {
+        let all = graph.weights.len();
+        let mut parts = Vec::with_capacity(all);
         let mut indices: *const c_int = std::ptr::null();
-        // SAFETY: the arrays are PETSc's, which takes them over; the set has an index for each own element, which stay until they are given
+        // SAFETY: the arrays are PETSc's, which takes them over; the set has an index for each element, which stay until they are given
         // back.
         unsafe {
             told(MatCreateMPIAdj(
-                PETSC_COMM_WORLD,
-                own as c_int,
+                RSMPI_COMM_SELF,
+                all as c_int,
                 all as c_int,
                 given(&graph.offsets)?,
                 given(&graph.neighbours)?,
                 null_mut(),
                 &raw mut self.graph,
             ))?;
-            told(MatPartitioningCreate(PETSC_COMM_WORLD, &raw mut self.parts))?;
+            told(MatPartitioningCreate(RSMPI_COMM_SELF, &raw mut self.parts))?;
             told(MatPartitioningSetAdjacency(self.parts, self.graph))?;
+            told(MatPartitioningSetNParts(self.parts, count as c_int))?;
             told(MatPartitioningSetType(self.parts, c"ptscotch".as_ptr()))?;
             let weights = given(&graph.weights)?;
             told(MatPartitioningSetVertexWeights(self.parts, weights))?;
             told(MatPartitioningSetFromOptions(self.parts))?;
             told(MatPartitioningApply(self.parts, &raw mut self.found))?;
             told(ISGetIndices(self.found, &raw mut indices))?;
-            if own > 0 {
-                parts.extend_from_slice(std::slice::from_raw_parts(indices, own));
+            if all > 0 {
+                parts.extend_from_slice(std::slice::from_raw_parts(indices, all));
             }
             told(ISRestoreIndices(self.found, &raw mut indices))?;
         }

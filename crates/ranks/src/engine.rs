@@ -49,12 +49,10 @@ pub struct Unsolved {
 
 /// Elements that are to be shared out, which of them have a face in common, and what each costs.
 pub struct Graph {
-    /// Where the elements of each rank's rows begin, and their end.
-    pub starts: Vec<usize>,
-    /// Where the neighbours of each of the own elements begin, and their end.
+    /// Where the neighbours of each element begin, and their end.
     pub offsets: Vec<i32>,
-    /// Neighbours of the own elements, ascending for each.
+    /// Neighbours of the elements, ascending for each.
     pub neighbours: Vec<i32>,
-    /// Cost of each own element.
+    /// Cost of each element.
     pub weights: Vec<i32>,
 }

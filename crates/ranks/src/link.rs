@@ -42,7 +42,7 @@ pub trait Link: Send + Sync {
     ///
     /// # Errors
     /// What the engine says.
-    fn parts_of_graph(&self, _ranks: &Ranks, _graph: &Graph) -> Result<Option<Vec<u32>>, String> {
+    fn parts_of_graph(&self, _graph: &Graph, _parts: usize) -> Result<Option<Vec<u32>>, String> {
         Ok(None)
     }
 }
@@ -153,15 +153,15 @@ impl Ranks {
             .map_or(Ok(None), |link| link.engine(self, rows))
     }
 
-    /// The part of each element by the engine, in which elements of different parts share few faces; none without an engine. All ranks ask
-    /// together.
+    /// The rank of each element by the engine, so that elements of different ranks share few faces; none without an engine. One rank asks alone,
+    /// so that the same graph is always shared out alike: what several find together depends on when their messages come.
     ///
     /// # Errors
     /// What the engine says.
     pub fn parts_of_graph(&self, graph: &Graph) -> Result<Option<Vec<u32>>, String> {
         self.link
             .as_ref()
-            .map_or(Ok(None), |link| link.parts_of_graph(self, graph))
+            .map_or(Ok(None), |link| link.parts_of_graph(graph, self.count()))
     }
 
     /// Where the parts of `count` things begin that ranks share in their order, and their end.

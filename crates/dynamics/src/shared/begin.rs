@@ -7,7 +7,7 @@ use std::sync::Arc;
 use carom_ranks::Ranks;
 
 use super::halo::{AtNodes, contact_nodes};
-use super::parts::{Partition, SharedNodes, ask};
+use super::parts::{Partition, SharedNodes};
 use crate::error::Error;
 use crate::system::{Kept, Model, System};
 
@@ -67,10 +67,8 @@ impl Begin {
     /// # Errors
     /// As [`Begin::first`]; a part that cannot be built.
     pub(crate) fn other(mut model: Model, ranks: &Ranks) -> Result<(System, Begin), Error> {
-        let asked = ask(ranks);
         let mut told = Vec::new();
         ranks.broadcast(&mut told);
-        asked?;
         let [dt, count, told @ ..] = &told[..] else {
             return Err(Error::Partition("the first rank has none".into()));
         };

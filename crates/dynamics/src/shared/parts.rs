@@ -1,6 +1,6 @@
 //! Which elements are whose.
 
-use carom_ranks::{Graph, Message, Ranks, partition};
+use carom_ranks::{Graph, Ranks, partition};
 
 use crate::error::Error;
 use crate::system::System;
@@ -89,12 +89,11 @@ impl Elements {
         &elements[first[node]..first[node + 1]]
     }
 
-    /// Own elements of a rank, and which elements have a face in common with each: as many nodes as there are dimensions.
-    fn graph(&self, system: &System, starts: Vec<usize>, rank: usize) -> Graph {
-        let own = starts[rank]..starts[rank + 1];
+    /// Which elements have a face in common with each: as many nodes as there are dimensions.
+    fn graph(&self, system: &System) -> Graph {
         let (mut offsets, mut neighbours) = (vec![0], Vec::new());
         let mut common = Vec::new();
-        for element in own.clone() {
+        for element in 0..self.cost.len() {
             common.clear();
             for &node in self.of(element) {
                 common.extend_from_slice(self.at_node(node as usize));
@@ -108,10 +107,9 @@ impl Elements {
             offsets.push(neighbours.len() as i32);
         }
         Graph {
-            starts,
             offsets,
             neighbours,
-            weights: self.cost[own].iter().map(|cost| *cost as i32).collect(),
+            weights: self.cost.iter().map(|cost| *cost as i32).collect(),
         }
     }
 
@@ -132,7 +130,7 @@ impl Elements {
 
 impl Partition {
     /// On the first rank, which has the whole system: parts of equal cost, by planes or, where that shares fewer nodes, by the library for graphs
-    /// that the ranks have. The others ask with [`ask`].
+    /// that the ranks have.
     ///
     /// # Errors
     /// What the library says.
@@ -144,11 +142,7 @@ impl Partition {
             by_graph: None,
         };
         if ranks.has_engine() {
-            let starts = ranks.starts(elements.cost.len());
-            for rank in 1..ranks.count() {
-                give_graph(ranks, rank, &elements.graph(system, starts.clone(), rank));
-            }
-            let graph = elements.graph(system, starts, 0);
+            let graph = elements.graph(system);
             if let Some(found) = ranks.parts_of_graph(&graph).map_err(Error::Partition)? {
                 shared.by_graph = Some(elements.shared(&found));
                 if shared.is_by_graph() {
@@ -197,57 +191,6 @@ impl Partition {
                 by_graph: (numbers[1] >= 0.0).then_some(numbers[1] as usize),
             },
         }
-    }
-}
-
-/// Lets the library share out the elements, on another rank than the first, which has [`Partition::of`] it.
-///
-/// # Errors
-/// What the library says.
-pub(crate) fn ask(ranks: &Ranks) -> Result<(), Error> {
-    if ranks.has_engine() {
-        let graph = receive_graph(ranks);
-        ranks.parts_of_graph(&graph).map_err(Error::Partition)?;
-    }
-    Ok(())
-}
-
-/// Gives another rank its elements of a graph.
-fn give_graph(ranks: &Ranks, with: usize, graph: &Graph) {
-    let numbers =
-        |numbers: &[i32]| -> Vec<f64> { numbers.iter().copied().map(f64::from).collect() };
-    let lists = [&graph.offsets, &graph.neighbours, &graph.weights].map(|list| numbers(list));
-    let mut values: Vec<f64> = graph.starts.iter().map(|start| *start as f64).collect();
-    values.extend(lists.iter().map(|list| list.len() as f64));
-    ranks.exchange(&[Message { with, values }], &mut [], || ());
-    let values = lists.concat();
-    ranks.exchange(&[Message { with, values }], &mut [], || ());
-}
-
-/// What the first rank gives so.
-fn receive_graph(ranks: &Ranks) -> Graph {
-    let next = |count: usize| {
-        let mut message = [Message {
-            with: 0,
-            values: vec![0.0; count],
-        }];
-        ranks.exchange(&[], &mut message, || ());
-        let [message] = message;
-        message.values
-    };
-    let mut starts: Vec<usize> = next(ranks.count() + 4)
-        .iter()
-        .map(|x| *x as usize)
-        .collect();
-    let lengths = starts.split_off(ranks.count() + 1);
-    let values = next(lengths.iter().sum());
-    let mut values = values.iter().map(|value| *value as i32);
-    let mut list = |length: usize| values.by_ref().take(length).collect();
-    Graph {
-        offsets: list(lengths[0]),
-        neighbours: list(lengths[1]),
-        weights: list(lengths[2]),
-        starts,
     }
 }
 
