@@ -350,12 +350,11 @@ fn undeformed(bodies: &[Body], part_of_body: &[usize], parts: usize) -> Vec<bool
 
 /// Diagonal of the box around the nodes of a body, m; zero of one without.
 fn diagonal(masses: &[(u32, f64)], x: &[[f64; 3]]) -> f64 {
-    let nodes = masses.iter();
-    let places: Vec<[f64; 3]> = nodes.map(|(node, _)| x[*node as usize]).collect();
-    match places.is_empty() {
-        true => 0.0,
-        false => Bounds::of(&places).diagonal(),
-    }
+    let places = masses
+        .iter()
+        .map(|(node, _)| Bounds::of(&[x[*node as usize]]));
+    let around = places.reduce(|around, place| around.union(&place));
+    around.map_or(0.0, |around| around.diagonal())
 }
 
 /// The place nearest to zero in the box around some places, m.
