@@ -4,6 +4,7 @@
 //! entry that is not in it is a bug and panics.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use crate::pattern::Cliques;
 
@@ -25,6 +26,8 @@ pub struct Csr {
     found: Vec<u32>,
     /// Number of pairs since then.
     added: usize,
+    /// Whose rows are kept; empty where all are. What is added outside of the pattern in another row is left out.
+    kept: Vec<bool>,
 }
 
 impl Csr {
@@ -39,7 +42,15 @@ impl Csr {
             val,
             found: Vec::new(),
             added: 0,
+            kept: Vec::new(),
         }
+    }
+
+    /// Matrix of zeros of which some rows are `kept`, those of one of several ranks. The lists are those with a kept unknown; the other rows have
+    /// what these couple, and what is added to them beside it is left out.
+    pub fn of_rows(kept: Vec<bool>, cliques: &Cliques) -> Self {
+        let all = Self::from_cliques(kept.len(), cliques);
+        Self { kept, ..all }
     }
 
     /// Matrix of zeros that has an entry for every pair of unknowns of every list, and the diagonal.
@@ -66,6 +77,8 @@ impl Csr {
             col[begin..].sort_unstable();
             row_ptr.push(col.len());
         }
+        // a vector that has grown may have room for twice as many
+        col.shrink_to_fit();
         let val = vec![0.0; col.len()];
         Self::new(n, row_ptr, col, val)
     }
@@ -91,8 +104,9 @@ impl Csr {
 
     /// Adds `value` to entry (i, j). Panics if the entry is not in the pattern.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        let k = self.position(i, j as u32);
-        self.val[k] += value;
+        if let Some(k) = self.position(i, j as u32) {
+            self.val[k] += value;
+        }
     }
 
     /// Adds a dense block: entry (a, b) of `block` (row-major, `unknowns.len()` squared entries) goes to row `unknowns[a]`,
@@ -101,8 +115,9 @@ impl Csr {
         debug_assert_eq!(block.len(), unknowns.len() * unknowns.len());
         for (a, &i) in unknowns.iter().enumerate() {
             for (b, &j) in unknowns.iter().enumerate() {
-                let k = self.position(i as usize, j);
-                self.val[k] += block[a * unknowns.len() + b];
+                if let Some(k) = self.position(i as usize, j) {
+                    self.val[k] += block[a * unknowns.len() + b];
+                }
             }
         }
     }
@@ -131,12 +146,16 @@ impl Csr {
             // rows of a node differ where the pattern couples one of its unknowns alone
             let alike = self.alike[row + 1..row + D].iter().all(|alike| *alike);
             for (b, &column) in first.iter().enumerate() {
-                let offset = self.found_place(row, column) - self.row_ptr[row];
+                let Some(place) = self.found_place(row, column) else {
+                    continue;
+                };
+                let offset = place - self.row_ptr[row];
                 for i in 0..D {
                     let k = match alike {
-                        true => self.row_ptr[row + i] + offset,
+                        true => Some(self.row_ptr[row + i] + offset),
                         false => self.position(row + i, column),
                     };
+                    let Some(k) = k else { continue };
                     debug_assert_eq!(self.col[k + D - 1], column + D as u32 - 1);
                     let values = self.val[k..k + D].iter_mut();
                     for (value, entry) in values.zip(&entries[(D * a + i) * nodes + b]) {
@@ -149,7 +168,7 @@ impl Csr {
 
     /// Place of an entry, which is likely that of the pair of nodes that was added at this turn before.
     #[inline(always)]
-    fn found_place(&mut self, i: usize, j: u32) -> usize {
+    fn found_place(&mut self, i: usize, j: u32) -> Option<usize> {
         let turn = self.added;
         self.added += 1;
         if let Some(&place) = self.found.get(turn) {
@@ -158,13 +177,16 @@ impl Csr {
                 && place < self.row_ptr[i + 1]
                 && self.col.get(place) == Some(&j)
             {
-                return place;
+                return Some(place);
             }
         }
-        let place = self.position(i, j);
+        let Some(place) = self.position(i, j) else {
+            self.added = turn;
+            return None;
+        };
         self.found.truncate(turn);
         self.found.push(place as u32);
-        place
+        Some(place)
     }
 
     /// Sets every stored entry to zero; the pattern stays.
@@ -203,10 +225,15 @@ impl Csr {
 
     /// Product y = A x.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
-        let mut i = 0;
-        while i < self.n {
+        self.multiply_rows(0..self.n, x, y);
+    }
+
+    /// Product y = A x in some rows; the others of `y` stay.
+    pub fn multiply_rows(&self, rows: Range<usize>, x: &[f64], y: &mut [f64]) {
+        let mut i = rows.start;
+        while i < rows.end {
             // rows of a node have the same columns: these and x are read once for two
-            if self.alike.get(i + 1) == Some(&true) {
+            if i + 1 < rows.end && self.alike[i + 1] {
                 let ((columns, first), (_, second)) = (self.row(i), self.row(i + 1));
                 let mut sums = [0.0; 2];
                 for ((&j, a), b) in columns.iter().zip(first).zip(second) {
@@ -235,23 +262,19 @@ impl Csr {
     }
 
     /// The rows and columns of the unknowns in `ranges`, numbered one range after the other; entries in other columns are left out.
-    pub fn restricted(&self, ranges: &[std::ops::Range<usize>]) -> Self {
+    pub fn restricted(&self, ranges: &[Range<usize>]) -> Self {
         self.part(ranges, |_| false)
     }
 
     /// [`Csr::restricted`], with [`Csr::with_identity`] of what `is_fixed` of the unknowns of this matrix.
-    pub fn part(
-        &self,
-        ranges: &[std::ops::Range<usize>],
-        is_fixed: impl Fn(usize) -> bool,
-    ) -> Self {
+    pub fn part(&self, ranges: &[Range<usize>], is_fixed: impl Fn(usize) -> bool) -> Self {
         self.gathered(ranges, is_fixed).0
     }
 
     /// [`Csr::part`], and for [`Csr::take_again`] where each of its entries comes from.
     pub(crate) fn gathered(
         &self,
-        ranges: &[std::ops::Range<usize>],
+        ranges: &[Range<usize>],
         is_fixed: impl Fn(usize) -> bool,
     ) -> (Self, Vec<usize>) {
         let rows = ranges.iter().cloned().flatten();
@@ -297,10 +320,12 @@ impl Csr {
         }
     }
 
-    fn position(&self, i: usize, j: u32) -> usize {
+    /// Place of an entry; none of one that other ranks have.
+    fn position(&self, i: usize, j: u32) -> Option<usize> {
         let (columns, _) = self.row(i);
         match columns.binary_search(&j) {
-            Ok(k) => self.row_ptr[i] + k,
+            Ok(k) => Some(self.row_ptr[i] + k),
+            Err(_) if self.kept.get(i) == Some(&false) => None,
             Err(_) => panic!("entry ({i}, {j}) is not in the pattern of the matrix"),
         }
     }
@@ -376,6 +401,35 @@ mod tests {
         let all = chain();
         let same = all.restricted(&[0..2, 2..4]);
         assert!((0..4).all(|i| same.row(i) == all.row(i)));
+    }
+
+    #[test]
+    fn rows_of_a_rank_are_those_of_all_whatever_is_added_elsewhere() {
+        let links: [(&[u32], &[f64]); 3] = [
+            (&[1, 0], &[2.0, -2.0, -2.0, 2.0]),
+            (&[1, 2], &[3.0, -3.0, -3.0, 3.0]),
+            (&[2, 3], &[5.0, -5.0, -4.0, 4.0]),
+        ];
+        let (mut all, mut own) = (Cliques::new(), Cliques::new());
+        links.iter().for_each(|(unknowns, _)| all.push(unknowns));
+        links[..2]
+            .iter()
+            .for_each(|(unknowns, _)| own.push(unknowns));
+        let mut whole = Csr::from_cliques(4, &all);
+        let mut part = Csr::of_rows(vec![true, true, false, false], &own);
+        for matrix in [&mut whole, &mut part] {
+            for (unknowns, block) in links {
+                matrix.add_block(unknowns, block);
+                matrix.add_nodes(unknowns, 1, (0.5, block));
+            }
+            matrix.symmetrise();
+        }
+        assert!((0..2).all(|i| part.row(i) == whole.row(i)));
+        assert_eq!(part.nnz(), 8);
+        let (x, mut y, mut of_part) = ([1.0, -2.0, 4.0, 8.0], [0.0; 4], [0.0; 4]);
+        whole.multiply(&x, &mut y);
+        part.multiply_rows(0..2, &x, &mut of_part);
+        assert_eq!(of_part, [y[0], y[1], 0.0, 0.0]);
     }
 
     #[test]

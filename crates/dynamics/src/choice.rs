@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use carom_algebra::Error as AlgebraError;
 use carom_algebra::csr::Csr;
-use carom_algebra::solver::{Cholesky, FactorStats, Iterative, Ordering};
+use carom_algebra::solver::{Cholesky, FactorStats, Iterative, Ordering, SharedRows};
 use carom_contact::{Pairing, Search};
 use carom_ranks::Ranks;
 
+use crate::at_rows::{graph_of_nodes, shared_rows};
 use crate::distributed::Distributed;
 use crate::error::Error;
 use crate::iterated::Iterated;
@@ -81,6 +82,16 @@ pub(crate) enum Chosen {
     Iterative(Box<Iterative>),
 }
 
+/// What is asked for with a matrix of so many unknowns, or taken because others have it; [`Solver::Auto`] where that which costs less is to be found.
+fn wanted((system, of): (&System, Use), unknowns: usize) -> Solver {
+    let few = unknowns < FEW || !of.inertia || system.needs_factor().is_some();
+    match (system.nonlinear.iteration.solver, of.others) {
+        (Solver::Auto, Some(same)) => same,
+        (Solver::Auto, None) if few => Solver::Direct,
+        (asked, _) => asked,
+    }
+}
+
 /// Chooses what solves with a symmetric positive definite matrix. `nodes`: node of each unknown.
 pub(crate) fn choose(
     (system, of): (&System, Use),
@@ -90,17 +101,11 @@ pub(crate) fn choose(
     let groups = groups(nodes);
     let place = |unknown: usize| system.x[nodes[unknown] as usize];
     let order = || Ordering::new(matrix, &groups, Some(&place));
-    let asked = match (system.nonlinear.iteration.solver, of.others) {
-        (Solver::Auto, Some(same)) => same,
-        (asked, _) => asked,
-    };
-    let few = || matrix.n < FEW || !of.inertia || system.needs_factor().is_some();
-    match asked {
+    match wanted((system, of), matrix.n) {
         Solver::Direct => Ok(Chosen::Direct(order()?)),
         Solver::Iterative => Ok(Chosen::Iterative(Box::new(Iterative::new(
             matrix, &groups,
         )?))),
-        Solver::Auto if few() => Ok(Chosen::Direct(order()?)),
         Solver::Auto => {
             let order = order()?;
             let mut solver = Iterative::new(matrix, &groups)?;
@@ -112,6 +117,72 @@ pub(crate) fn choose(
     }
 }
 
+/// How several ranks share the rows of the matrix of some parts, where these may have iterations. Parts are numbered one after the other.
+/// `coupled`: see [`shared_rows`].
+pub(crate) fn rows_on_ranks(
+    (system, of): (&System, Use),
+    parts: &[Range<usize>],
+    coupled: &[Vec<u32>],
+) -> Option<SharedRows> {
+    let unknowns = parts.iter().map(ExactSizeIterator::len).sum();
+    let shares = of.ranks.count() > 1 && wanted((system, of), unknowns) != Solver::Direct;
+    shares.then(|| shared_rows(system, parts, coupled, of.ranks))
+}
+
+/// What solves with the matrix of some parts over ranks, of which this one has some rows; none where a factor costs less. `matrix`: with
+/// [`Csr::with_identity`].
+pub(crate) fn choose_on_ranks(
+    (system, of): (&System, Use),
+    matrix: &Csr,
+    rows: SharedRows,
+    parts: &[Range<usize>],
+) -> Result<Option<Box<Iterative>>, AlgebraError> {
+    let wanted = wanted((system, of), matrix.n);
+    let mut solver = Iterative::on(matrix, rows)?;
+    if wanted == Solver::Auto {
+        let FactorStats {
+            nnz_factor, flops, ..
+        } = counted(system, parts)?;
+        if !pays(&mut solver, (system, of), [nnz_factor as f64, flops]) {
+            return Ok(None);
+        }
+    }
+    Ok(Some(Box::new(solver)))
+}
+
+/// The size of a factor of the matrix of some parts.
+fn counted(system: &System, parts: &[Range<usize>]) -> Result<FactorStats, AlgebraError> {
+    let (nodes, pattern, weights) = graph_of_nodes(system, parts);
+    let place = |node: usize| system.x[nodes[node] as usize];
+    FactorStats::counted(&pattern, &weights, &place)
+}
+
+/// The operator of such a solver: with the engine of the ranks, where they have one.
+pub(crate) fn operator_on_ranks(
+    system: &System,
+    solver: Box<Iterative>,
+    (matrix, parts): (&Csr, &[Range<usize>]),
+) -> Result<Operator, AlgebraError> {
+    let all = system.unknowns.node_of_each();
+    let unknowns = || parts.iter().cloned().flatten();
+    let places: Vec<[f64; 3]> = unknowns().map(|i| system.x[all[i] as usize]).collect();
+    let solver = Box::new(solver.engaged((matrix, |unknown| places[unknown]))?);
+    if solver.is_factored() {
+        let size = counted(system, parts)?;
+        let factor = Distributed::new(solver, (TOLERANCE, size));
+        return Ok(Operator::Distributed(Box::new(factor)));
+    }
+    Ok(iterated(solver))
+}
+
+fn iterated(solver: Box<Iterative>) -> Operator {
+    Operator::Iterated(Iterated {
+        solver: Some(solver),
+        tolerance: TOLERANCE,
+        failed: None,
+    })
+}
+
 /// An operator of a symmetric positive definite matrix; unknowns marked `fixed` are taken out. `nodes`: node of each unknown.
 pub(crate) fn operator(
     (system, of): (&System, Use),
@@ -120,25 +191,13 @@ pub(crate) fn operator(
     nodes: &[u32],
 ) -> Result<Operator, AlgebraError> {
     let matrix = matrix.with_identity(fixed);
-    let solver = match choose((system, of), &matrix, nodes)? {
+    match choose((system, of), &matrix, nodes)? {
         Chosen::Direct(order) => {
             let factor = Cholesky::ordered(&matrix, order)?;
-            return Ok(Operator::Factored(Box::new(factor)));
+            Ok(Operator::Factored(Box::new(factor)))
         }
-        Chosen::Iterative(solver) => solver,
-    };
-    let place = |unknown: usize| system.x[nodes[unknown] as usize];
-    let solver = Box::new(solver.on(of.ranks, (&matrix, place))?);
-    if solver.is_factored() {
-        let order = Ordering::new(&matrix, &groups(nodes), Some(&place))?;
-        let factor = Distributed::new(solver, (TOLERANCE, FactorStats::counted(&order)));
-        return Ok(Operator::Distributed(Box::new(factor)));
+        Chosen::Iterative(solver) => Ok(iterated(solver)),
     }
-    Ok(Operator::Iterated(Iterated {
-        solver: Some(solver),
-        tolerance: TOLERANCE,
-        failed: None,
-    }))
 }
 
 /// The operator of the matrix of a part, or the error that names its first node.

@@ -29,7 +29,7 @@ impl Distributed {
         (tolerance, mut stats): (f64, FactorStats),
     ) -> Distributed {
         let n = solver.unknowns();
-        stats.factorisations = 1;
+        (stats.unknowns, stats.factorisations) = (n, 1);
         Distributed {
             solver,
             tolerance,

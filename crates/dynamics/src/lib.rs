@@ -5,6 +5,7 @@
 //! printing.
 
 mod alike;
+mod at_rows;
 mod blocks;
 mod choice;
 mod columns;

@@ -7,6 +7,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::{Cholesky, FactorStats, Ordering, Response, SparseRow, gram};
 
+use crate::at_rows::AtRows;
 use crate::distributed::Distributed;
 use crate::error::{Error, MeshNode};
 use crate::iterated::Iterated;
@@ -501,17 +502,29 @@ pub(crate) fn factored(
 pub fn assembled(
     system: &System,
     part: &Range<usize>,
+    factors: [f64; 2],
+    stiffness_factors: &dyn Fn(usize) -> f64,
+) -> Csr {
+    assembled_at((system, &AtRows::all()), part, factors, stiffness_factors)
+}
+
+/// The same in some rows.
+pub(crate) fn assembled_at(
+    (system, at): (&System, &AtRows),
+    part: &Range<usize>,
     [mass, damping]: [f64; 2],
     stiffness_factors: &dyn Fn(usize) -> f64,
 ) -> Csr {
+    let bodies = 0..system.bodies.len();
     let mut cliques = Cliques::new();
-    for body in &system.bodies {
-        push_cliques(body, &system.unknowns, part, &mut cliques);
+    for k in bodies.clone() {
+        push_cliques(at.body(system, k), &system.unknowns, part, &mut cliques);
     }
     push_rows(system, part, &mut cliques);
-    let mut a = Csr::from_cliques(part.len(), &cliques);
-    for (k, body) in system.bodies.iter().enumerate() {
-        body.assemble([stiffness_factors(k), damping, 0.0], part, &mut a);
+    let mut a = at.matrix(part, &cliques);
+    for k in bodies {
+        let factors = [stiffness_factors(k), damping, 0.0];
+        at.body(system, k).assemble(factors, part, &mut a);
     }
     system.mass.add_to(mass, part, part.start, &mut a);
     a

@@ -90,6 +90,26 @@ impl Ordering {
     }
 }
 
+/// Name of the order that [`Ordering::new`] chooses for a matrix, and [`Ordering::work`] in it, from the graph of its nodes, as which `nodes` stands: for
+/// matrices that are never whole. `weights`: unknowns of each node that are not held, none of a node without neighbours; `place`: of a node.
+pub(crate) fn counted(
+    nodes: &Csr,
+    weights: &[u32],
+    place: &Place,
+) -> Result<(&'static str, [f64; 2]), Error> {
+    let coupled = |&node: &u32| nodes.row(node as usize).0.len() > 1;
+    let connected: Vec<u32> = (0..nodes.n as u32).filter(coupled).collect();
+    let each: Vec<u32> = (0..nodes.n as u32).collect();
+    let groups = Groups::new(&connected, &each);
+    let mut graph = Graph::new(nodes, &groups);
+    let own = connected.iter().map(|&node| weights[node as usize]);
+    graph.weights = own.collect();
+    let unknowns: u32 = graph.weights.iter().sum();
+    let places = groups.places(place);
+    let (name, _, work) = best_order(&graph, unknowns as usize, Some(&places))?;
+    Ok((name, [work.entries, work.operations]))
+}
+
 /// The best of minimum degree and the nested dissections, with its name and its work.
 fn best_order(
     graph: &Graph,

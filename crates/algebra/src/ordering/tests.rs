@@ -197,6 +197,34 @@ fn places_never_make_an_order_worse() {
 }
 
 #[test]
+fn the_graph_of_nodes_tells_the_work_of_the_matrix() {
+    for cells in [[6, 5, 4], [15, 14, 13]] {
+        let (matrix, node_of) = grid(cells, 3);
+        let places = places(cells, 0.1, 0.0);
+        // a side is held, and one unknown of each node of an edge
+        let [nx, ny, _] = cells.map(|n| n + 1);
+        let held: Vec<bool> = (0..matrix.n)
+            .map(|i| i / 3 < nx * ny || (i / 3) % nx == 0 && i % 3 == 1)
+            .collect();
+        let matrix = matrix.with_identity(&held);
+        let place = |unknown: usize| places[node_of[unknown] as usize];
+        let order = Ordering::new(&matrix, &node_of, Some(&place)).unwrap();
+        let mut weights = vec![0; places.len()];
+        let mut cliques = Cliques::new();
+        for i in (0..matrix.n).filter(|&i| !held[i]) {
+            weights[node_of[i] as usize] += 1;
+            for &j in matrix.row(i).0 {
+                cliques.push(&[node_of[i], node_of[j as usize]]);
+            }
+        }
+        let nodes = Csr::from_cliques(places.len(), &cliques);
+        let place = |node: usize| places[node];
+        let found = counted(&nodes, &weights, &place).unwrap();
+        assert_eq!(found, (order.name, order.work()));
+    }
+}
+
+#[test]
 fn separators_of_layers_are_flat_and_others_are_not() {
     let cells = [15, 14, 13];
     for (matrix, nodes) in [grid(cells, 3), tetrahedra(cells)] {

@@ -9,7 +9,7 @@ use super::panel::{LANES, Lanes};
 use super::response::{Response, SparseRow};
 use super::supernodal::analyse;
 use super::sweep::{Backward, Forward, ForwardLanes, Panels};
-use crate::ordering::{self, Ordering};
+use crate::ordering::{self, Ordering, Place, counted};
 use crate::{Error, csr::Csr};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -37,19 +37,23 @@ pub struct FactorStats {
 }
 
 impl FactorStats {
-    /// Of a factor in this order that others make and keep, every group taken as dense, before it is made.
-    pub fn counted(order: &Ordering) -> FactorStats {
-        let [entries, flops] = order.work();
-        FactorStats {
-            unknowns: order.permutation.len(),
+    /// Of a factor that others make and keep, before it is made, every node taken as dense, without held unknowns. Of the matrix `nodes` the pattern is that of the nodes.
+    /// `weights`: unknowns of each node that are not held, none of one without neighbours; `place`: of a node, m.
+    ///
+    /// # Errors
+    /// The analysis fails.
+    pub fn counted(nodes: &Csr, weights: &[u32], place: &Place) -> Result<FactorStats, Error> {
+        let (ordering, [entries, flops]) = counted(nodes, weights, place)?;
+        Ok(FactorStats {
+            unknowns: weights.iter().sum::<u32>() as usize,
             nnz_factor: entries as usize,
             flops,
             bytes: size_of::<f64>() * entries as usize,
-            ordering: order.name.into(),
+            ordering: ordering.into(),
             factorisations: 0,
             sweeps: 0,
             responses: 0,
-        }
+        })
     }
 }
 

@@ -6,10 +6,11 @@
 
 use std::ops::Range;
 
-use carom_ranks::{Engine, OwnRows, Ranks};
+use carom_ranks::{Engine, OwnRows};
 use rayon::prelude::*;
 
 use super::response::SparseRow;
+use super::shared_rows::SharedRows;
 use super::symmetric_blocks::SymmetricBlocks;
 use crate::dense::DenseCholesky;
 use crate::reduce::dot;
@@ -45,112 +46,114 @@ pub struct Iterative {
     best: Vec<f64>,
     /// Products with the matrix so far.
     products: usize,
-    /// Who shares the rows of products, and where the chunks of each begin.
-    ranks: Ranks,
-    chunks: Vec<usize>,
-    /// Place of the node of each block, m; empty in one process.
-    nodes: Vec<[f64; 3]>,
+    /// Who shares the rows of products, and the first unknown of each rank.
+    rows: SharedRows,
+    starts: Vec<usize>,
+    /// Places of the own nodes, m, where an engine may have the rows.
+    nodes: Option<Vec<[f64; 3]>>,
     /// What solves without contacts in place of the iterations here, of ranks that have it.
     engine: Option<Box<dyn Engine>>,
 }
 
 impl Iterative {
-    /// `group_of[i]`: node of unknown i; those of a node follow each other. The blocks of the preconditioner are those of nodes where all have as
-    /// many unknowns, else parts of them: of six unknowns displacement and rotation.
+    /// `group_of[i]`: node of unknown i; those of a node follow each other. The blocks of the preconditioner are those of [`SharedRows::alone`].
     ///
     /// # Errors
     /// A block on the diagonal that is not positive definite or not finite; `group_of` of the wrong length.
     pub fn new(matrix: &Csr, group_of: &[u32]) -> Result<Self, Error> {
-        if group_of.len() != matrix.n {
+        Iterative::on(matrix, SharedRows::alone(group_of))
+    }
+
+    /// Of ranks that share rows: each multiplies its own and is given the others. Of `matrix` the rows that this rank
+    /// [needs](SharedRows::needed) are read. All ranks call each function together.
+    ///
+    /// # Errors
+    /// As [`Iterative::new`], on all ranks.
+    pub fn on(matrix: &Csr, rows: SharedRows) -> Result<Self, Error> {
+        if rows.n != matrix.n {
             return Err(Error::WrongLength {
                 what: "groups of unknowns",
                 expected: matrix.n,
-                found: group_of.len(),
+                found: rows.n,
             });
         }
-        let size = common_size(group_of);
-        let blocks = SymmetricBlocks::new(matrix, size);
+        let blocks = SymmetricBlocks::new(matrix, &rows);
         let vector = || vec![0.0; matrix.n];
-        Ok(Self {
+        let mut solver = Self {
             n: matrix.n,
-            size,
-            inverses: inverses(matrix, size)?,
+            size: rows.size,
+            inverses: vec![0.0; matrix.n * rows.size],
             residual: vector(),
             preconditioned: vector(),
             direction: vector(),
             image: vector(),
             best: vector(),
             products: 0,
-            ranks: Ranks::alone(),
-            chunks: vec![0, blocks.chunks()],
-            nodes: Vec::new(),
+            starts: rows.unknown_starts(),
+            nodes: None,
             engine: None,
             matrix: blocks,
-        })
+            rows,
+        };
+        solver.invert(matrix)?;
+        Ok(solver)
     }
 
-    /// Shares the rows of products with other ranks, which all have this `matrix`: each multiplies its own and is given the others. Ranks that
-    /// have an engine ([`Ranks::has_engine`]) solve with it. `place`: of the node of an unknown, m.
+    /// Gives the own rows to the engine of ranks that have one ([`Ranks::has_engine`](carom_ranks::Ranks::has_engine)), which solves from then
+    /// on. `place`: of the node of an unknown, m.
     ///
     /// # Errors
     /// [`Error::Engine`].
-    pub fn on(
+    pub fn engaged(
         mut self,
-        ranks: &Ranks,
         (matrix, place): (&Csr, impl Fn(usize) -> [f64; 3]),
     ) -> Result<Self, Error> {
-        if ranks.count() == 1 {
-            return Ok(self);
+        if self.rows.are_shared() {
+            let own = self.rows.engine_rows();
+            self.nodes = Some(own.step_by(self.size).map(place).collect());
         }
-        self.chunks = ranks.starts(self.matrix.chunks());
-        self.nodes = (0..self.n).step_by(self.size).map(place).collect();
-        self.ranks = ranks.clone();
         self.take_engine(matrix)?;
         Ok(self)
     }
 
     /// Gives the own rows to the engine, if there is one.
     fn take_engine(&mut self, matrix: &Csr) -> Result<(), Error> {
-        if !self.ranks.has_engine() {
+        let Some(nodes) = &self.nodes else {
+            return Ok(());
+        };
+        if !self.rows.ranks().has_engine() {
             return Ok(());
         }
         // its solver before goes first, of which memory may have no room for two
         self.engine = None;
-        let blocks = self.ranks.starts(self.n / self.size).into_iter();
-        let starts: Vec<usize> = blocks.map(|block| block * self.size).collect();
-        let rows = self.own_rows(matrix, &starts);
-        self.engine = self
-            .ranks
-            .engine(&rows)
-            .map_err(|cause| Error::Engine { cause })?;
+        let rows = own_rows(matrix, &self.rows, nodes);
+        let engine = self.rows.ranks().engine(&rows);
+        self.engine = engine.map_err(|cause| Error::Engine { cause })?;
         Ok(())
     }
 
-    fn own_rows<'a>(&self, matrix: &Csr, starts: &'a [usize]) -> OwnRows<'a> {
-        let rank = self.ranks.rank();
-        let own = starts[rank]..starts[rank + 1];
-        // two or three displacements at each node
-        let alike = (2..=3).contains(&self.size);
-        let mut rows = OwnRows {
-            starts,
-            offsets: vec![0],
-            columns: Vec::new(),
-            values: Vec::new(),
-            block: if alike { self.size } else { 1 },
-            places: Vec::new(),
-        };
-        for i in own.clone() {
-            let (columns, values) = matrix.row(i);
-            rows.columns.extend(columns.iter().map(|j| *j as i32));
-            rows.values.extend_from_slice(values);
-            rows.offsets.push(rows.values.len() as i32);
+    /// Inverses of the blocks on the diagonal: each rank inverts those of its own rows.
+    fn invert(&mut self, matrix: &Csr) -> Result<(), Error> {
+        let (size, ranks) = (self.size, self.rows.ranks());
+        let own = self.rows.unknowns(&self.rows.own());
+        let inverses = &mut self.inverses[size * own.start..size * own.end];
+        let refused = invert_blocks(matrix, (size, own.start), inverses);
+        // the first unknown of all ranks that is refused, with its diagonal
+        let mut first = [refused.map_or(f64::NEG_INFINITY, |unknown| -(unknown as f64))];
+        ranks.reduce(&mut [], &mut first);
+        if first[0] > f64::NEG_INFINITY {
+            let unknown = -first[0] as usize;
+            let mut diagonal = [0.0];
+            if own.contains(&unknown) {
+                diagonal[0] = matrix.get(unknown, unknown);
+            }
+            ranks.reduce(&mut diagonal, &mut []);
+            let [diagonal] = diagonal;
+            return Err(Error::NotPositiveDefinite { unknown, diagonal });
         }
-        if alike {
-            let dim = self.size;
-            let places = &self.nodes[own.start / dim..own.end / dim];
-            rows.places = places.iter().flat_map(|x| x[..dim].to_vec()).collect();
-        }
-        rows
+        let starts = self.starts.iter().map(|start| start * size);
+        ranks.gather(&mut self.inverses, &starts.collect::<Vec<_>>());
+        Ok(())
     }
 
     /// Takes another matrix with the same unknowns.
@@ -158,7 +161,7 @@ impl Iterative {
     /// # Errors
     /// A block on the diagonal that is not positive definite or not finite; [`Error::Engine`].
     pub fn renew(&mut self, matrix: &Csr) -> Result<(), Error> {
-        self.inverses = inverses(matrix, self.size)?;
+        self.invert(matrix)?;
         self.matrix.renew(matrix);
         self.take_engine(matrix)
     }
@@ -180,9 +183,7 @@ impl Iterative {
             return Err(Error::Engine { cause });
         };
         let mut columns = vec![0.0; rows.len() * at.len()];
-        let starts = self.ranks.starts(self.n / self.size);
-        let rank = self.ranks.rank();
-        let own = self.size * starts[rank]..self.size * starts[rank + 1];
+        let own = self.rows.engine_rows();
         let mut solved = Ok(());
         let mut loads = Vec::new();
         let batches = columns.chunks_mut((TOGETHER * at.len()).max(1));
@@ -204,7 +205,7 @@ impl Iterative {
                     }
                 }
             }
-            self.ranks.reduce(columns, &mut []);
+            self.rows.ranks().reduce(columns, &mut []);
         }
         solved.map_err(|cause| Error::Engine { cause })?;
         Ok(columns)
@@ -215,23 +216,23 @@ impl Iterative {
         self.n
     }
 
-    /// Bytes that an iteration reads and writes.
+    /// Bytes that an iteration reads and writes, on all ranks together as many as in one process. All ranks call it together.
     pub fn bytes(&self) -> usize {
-        self.matrix.bytes() + 8 * (self.inverses.len() + VECTORS * self.n)
+        let mut of_blocks = [self.matrix.bytes(self.rows.own()) as f64];
+        self.rows.ranks().reduce(&mut of_blocks, &mut []);
+        of_blocks[0] as usize + 8 * (self.inverses.len() + VECTORS * self.n)
+    }
+
+    /// Entries of the matrix that this rank keeps.
+    pub fn entries(&self) -> usize {
+        self.matrix.entries()
     }
 
     /// y = A x. Threads and ranks share the rows; an entry has the same bits on any number of them.
     pub fn multiply(&mut self, x: &[f64], y: &mut [f64]) {
         self.products += 1;
-        let rank = self.ranks.rank();
-        let own = self.chunks[rank]..self.chunks[rank + 1];
-        self.matrix.multiply(own, x, y);
-        if self.ranks.count() > 1 {
-            let length = self.matrix.length();
-            let starts = self.chunks.iter().map(|k| (k * length).min(self.n));
-            let starts: Vec<usize> = starts.collect();
-            self.ranks.gather(&mut y[..self.n], &starts);
-        }
+        self.matrix.multiply(self.rows.own(), x, y);
+        self.rows.ranks().gather(&mut y[..self.n], &self.starts);
     }
 
     /// z = G⁻¹ r, with G the blocks on the diagonal.
@@ -346,38 +347,56 @@ impl Iterative {
     }
 }
 
-/// Unknowns of a block: those of a node where all nodes have as many, else what divides all.
-fn common_size(group_of: &[u32]) -> usize {
-    let nodes = || group_of.chunk_by(|a, b| a == b).map(<[u32]>::len);
-    let divides = |size: &usize| nodes().all(|unknowns| unknowns % size == 0);
-    let alike = |size: &usize| *size < 6 || nodes().all(|unknowns| unknowns == 6);
-    [6, 3, 2]
-        .into_iter()
-        .find(|size| divides(size) && alike(size))
-        .unwrap_or(1)
+/// The rows that a rank has for an engine, and the places of their nodes.
+fn own_rows<'a>(matrix: &Csr, rows: &'a SharedRows, nodes: &[[f64; 3]]) -> OwnRows<'a> {
+    let dim = rows.size;
+    // two or three displacements at each node
+    let alike = (2..=3).contains(&dim);
+    let count: usize = rows.engine_rows().map(|i| matrix.row(i).0.len()).sum();
+    let mut own = OwnRows {
+        starts: &rows.engine,
+        offsets: vec![0],
+        columns: Vec::with_capacity(count),
+        values: Vec::with_capacity(count),
+        block: if alike { dim } else { 1 },
+        places: Vec::new(),
+    };
+    for i in rows.engine_rows() {
+        let (columns, values) = matrix.row(i);
+        own.columns.extend(columns.iter().map(|j| *j as i32));
+        own.values.extend_from_slice(values);
+        own.offsets.push(own.values.len() as i32);
+    }
+    if alike {
+        own.places = nodes.iter().flat_map(|x| x[..dim].to_vec()).collect();
+    }
+    own
 }
 
-/// Inverses of the blocks on the diagonal.
-fn inverses(matrix: &Csr, size: usize) -> Result<Vec<f64>, Error> {
-    let mut inverses = vec![0.0; matrix.n * size];
+/// Inverts blocks on the diagonal, from that of the unknown `first` on; the first unknown of one that is not positive definite.
+fn invert_blocks(
+    matrix: &Csr,
+    (size, first): (usize, usize),
+    inverses: &mut [f64],
+) -> Option<usize> {
+    inverses.fill(0.0);
     let mut block = Vec::new();
     for (place, inverse) in inverses.chunks_exact_mut(size * size).enumerate() {
-        let own: Range<usize> = place * size..(place + 1) * size;
+        let start = first + place * size;
+        let own: Range<usize> = start..start + size;
         block.clear();
         for i in own.clone() {
             block.extend(own.clone().map(|j| matrix.get(i, j)));
         }
-        let refused = |_| Error::NotPositiveDefinite {
-            unknown: own.start,
-            diagonal: matrix.get(own.start, own.start),
+        let Ok(factor) = DenseCholesky::new(size, &block) else {
+            return Some(start);
         };
-        let factor = DenseCholesky::new(size, &block).map_err(refused)?;
         for (k, column) in inverse.chunks_exact_mut(size).enumerate() {
             column[k] = 1.0;
             factor.solve(column);
         }
     }
-    Ok(inverses)
+    None
 }
 
 /// z = B r, with B square blocks of so many rows on the diagonal.

@@ -13,6 +13,7 @@ mod panel;
 mod quasi_definite;
 mod response;
 mod saddle;
+mod shared_rows;
 mod squares;
 mod supernodal;
 mod sweep;
@@ -25,5 +26,6 @@ pub use iterative::Iterative;
 pub use quasi_definite::QuasiDefinite;
 pub use response::{Response, SparseRow};
 pub use saddle::Saddle;
+pub use shared_rows::SharedRows;
 
 pub(crate) use panel::{backward, forward};

@@ -10,17 +10,17 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::shared_rows::SharedRows;
 use crate::csr::Csr;
 
-/// Block rows of a chunk: a sixteenth of all, within these limits.
-const ROWS: Range<usize> = 1024..4096;
-
-/// Half of a symmetric matrix.
+/// Half of a symmetric matrix, or of the rows of it that a rank multiplies.
 pub(super) struct SymmetricBlocks {
     /// Rows of a block.
     size: usize,
     /// Block rows of all chunks but the last.
     length: usize,
+    /// Those that are multiplied; the others are empty.
+    kept: Range<usize>,
     chunks: Vec<Chunk>,
 }
 
@@ -44,14 +44,32 @@ struct Chunk {
 }
 
 impl SymmetricBlocks {
-    /// Takes the diagonal and the right half of a matrix, of which blocks of so many rows are a fair part: blocks are stored whole.
-    pub(super) fn new(matrix: &Csr, size: usize) -> SymmetricBlocks {
-        let rows = matrix.n / size;
-        let length = (rows / 16).clamp(ROWS.start, ROWS.end);
-        let starts = (0..rows).step_by(length);
-        let chunk = |start: usize| Chunk::new(matrix, size, start..(start + length).min(rows));
-        let mut chunks: Vec<Chunk> = starts.map(chunk).collect();
-        for number in 0..chunks.len() {
+    /// Takes the diagonal and the right half of a matrix, of which blocks are a fair part: they are stored whole. The chunks that are not
+    /// multiplied here need no rows.
+    pub(super) fn new(matrix: &Csr, rows: &SharedRows) -> SymmetricBlocks {
+        let (size, length) = (rows.size, rows.length);
+        let mut blocks = SymmetricBlocks {
+            size,
+            length,
+            kept: rows.chunks.clone(),
+            chunks: Vec::new(),
+        };
+        blocks
+            .chunks
+            .resize_with(rows.chunk_count(), Chunk::default);
+        blocks.take(matrix);
+        blocks
+    }
+
+    /// Takes the pattern and the values of the kept chunks.
+    fn take(&mut self, matrix: &Csr) {
+        let (size, length, kept) = (self.size, self.length, self.kept.clone());
+        let (rows, chunks) = (matrix.n / size, &mut self.chunks);
+        for number in kept.clone() {
+            let start = number * length;
+            chunks[number] = Chunk::new(matrix, size, start..(start + length).min(rows));
+        }
+        for number in kept {
             let outside = std::mem::take(&mut chunks[number].outside);
             let mut begin = 0;
             for of in outside.chunk_by(|a, b| *a as usize / length == *b as usize / length) {
@@ -61,26 +79,17 @@ impl SymmetricBlocks {
             }
             chunks[number].outside = outside;
         }
-        SymmetricBlocks {
-            size,
-            length,
-            chunks,
-        }
     }
 
     /// Takes the values of another matrix; the pattern too, where it is another.
     pub(super) fn renew(&mut self, matrix: &Csr) {
         let size = self.size;
-        let renewed = self.chunks.par_iter_mut();
+        let renewed = self.chunks[self.kept.clone()].par_iter_mut();
         let renewed = renewed.map(|chunk| chunk.take_values(matrix, size));
         if !renewed.reduce(|| true, |one, other| one && other) {
-            *self = SymmetricBlocks::new(matrix, size);
+            self.chunks.fill_with(Chunk::default);
+            self.take(matrix);
         }
-    }
-
-    /// Number of chunks.
-    pub(super) fn chunks(&self) -> usize {
-        self.chunks.len()
     }
 
     /// Unknowns of all chunks but the last.
@@ -88,15 +97,20 @@ impl SymmetricBlocks {
         self.length * self.size
     }
 
-    /// Bytes that a product reads and writes beside its two vectors.
-    pub(super) fn bytes(&self) -> usize {
+    /// Bytes that a product of some chunks reads and writes beside its two vectors.
+    pub(super) fn bytes(&self, own: Range<usize>) -> usize {
         let of = |chunk: &Chunk| {
             8 * chunk.values.len() + 4 * chunk.places.len() + 16 * (chunk.x.len() + chunk.y.len())
         };
-        self.chunks.iter().map(of).sum()
+        self.chunks[own].iter().map(of).sum()
     }
 
-    /// y = A x in the rows of some chunks; `y` has all rows, of which the others stay.
+    /// Entries kept.
+    pub(super) fn entries(&self) -> usize {
+        self.chunks.iter().map(|chunk| chunk.values.len()).sum()
+    }
+
+    /// y = A x in the rows of some chunks, the own ones of the rank; `y` has all rows, of which the others stay.
     pub(super) fn multiply(&mut self, own: Range<usize>, x: &[f64], y: &mut [f64]) {
         let size = self.size;
         let before = self.chunks[own.clone()].iter();

@@ -2,8 +2,12 @@
 
 use crate::block::block;
 use crate::numbers::distance;
+use std::ops::Range;
+
 use carom_algebra::Error;
-use carom_algebra::solver::{Cholesky, Iterative, Saddle, SparseRow, gram};
+use carom_algebra::csr::Csr;
+use carom_algebra::pattern::Cliques;
+use carom_algebra::solver::{Cholesky, Iterative, Saddle, SharedRows, SparseRow, gram};
 use carom_ranks::{Ranks, threads};
 use carom_testing::Random;
 
@@ -172,6 +176,90 @@ fn motions_of_a_load_and_of_forces_are_found_together_and_gone_on_with() {
     assert!(distance(&image, &load) < 1e-10);
 }
 
+/// The rows of ranks that share a matrix.
+fn shared(matrix: &Csr, node: &[u32], ranks: &Ranks) -> SharedRows {
+    SharedRows::new(node, ranks, |own| {
+        let first = own.map(|i| matrix.row(i).0[0] as usize);
+        first.min().unwrap()
+    })
+}
+
+/// These rows of a matrix, and no other entry than zeros on the diagonal.
+fn of_rows(matrix: &Csr, rows: &Range<usize>) -> Csr {
+    let mut cliques = Cliques::new();
+    for i in rows.clone() {
+        for &j in matrix.row(i).0 {
+            cliques.push(&[i as u32, j]);
+        }
+    }
+    let mut own = Csr::from_cliques(matrix.n, &cliques);
+    for i in rows.clone() {
+        let (columns, values) = matrix.row(i);
+        for (&j, &value) in columns.iter().zip(values) {
+            own.add(i, j as usize, value);
+        }
+    }
+    own
+}
+
+#[test]
+fn ranks_keep_their_rows_alone_and_find_the_same_solution() {
+    let system = block(17, 2.0);
+    let b = Random(41).vector(system.matrix.n);
+    let solution = |ranks: &Ranks| {
+        let rows = shared(&system.matrix, &system.node, ranks);
+        let own = of_rows(&system.matrix, &rows.needed());
+        let mut solver = Iterative::on(&own, rows).unwrap();
+        let mut x = vec![0.0; b.len()];
+        let iterations = solver.solve(&b, &mut x, 1e-12).unwrap();
+        (x, iterations, solver.bytes(), solver.entries())
+    };
+    let (x, iterations, bytes, entries) = solution(&Ranks::alone());
+    for count in [2, 3, 20] {
+        let kept = std::thread::scope(|scope| {
+            let own = threads(count).into_iter().map(|ranks| {
+                let (solution, x) = (&solution, &x);
+                scope.spawn(move || {
+                    let own = solution(&ranks);
+                    assert!(own.0 == *x);
+                    assert_eq!((own.1, own.2), (iterations, bytes));
+                    own.3
+                })
+            });
+            let own: Vec<_> = own.collect();
+            own.into_iter()
+                .map(|rank| rank.join().unwrap())
+                .collect::<Vec<_>>()
+        });
+        // six chunks of rows, of which a rank has its own and the one before, whose columns are among its rows
+        let chunks = (6 / count).max(1) + 1;
+        let most = kept.iter().max().unwrap();
+        assert!(*most <= entries * chunks / 5, "{kept:?} of {entries}");
+    }
+}
+
+#[test]
+fn a_block_that_is_not_positive_definite_is_refused_on_all_ranks() {
+    let mut system = block(14, 0.7);
+    let last = system.matrix.n - 1;
+    system.matrix.add(last, last, -1e9);
+    let refused = |ranks: &Ranks| {
+        let rows = shared(&system.matrix, &system.node, ranks);
+        let own = of_rows(&system.matrix, &rows.needed());
+        Iterative::on(&own, rows).err()
+    };
+    let alone = refused(&Ranks::alone());
+    assert!(
+        matches!(alone, Some(Error::NotPositiveDefinite { unknown, .. }) if unknown == last - 2)
+    );
+    std::thread::scope(|scope| {
+        for ranks in threads(3) {
+            let (refused, alone) = (&refused, &alone);
+            scope.spawn(move || assert_eq!(&refused(&ranks), alone));
+        }
+    });
+}
+
 #[test]
 fn products_have_the_same_bits_on_any_number_of_threads_and_of_ranks() {
     // several chunks of rows, the last one short
@@ -179,9 +267,9 @@ fn products_have_the_same_bits_on_any_number_of_threads_and_of_ranks() {
     let x = Random(37).vector(system.matrix.n);
     let product = |threads: usize, ranks: &Ranks| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        let mut solver = Iterative::new(&system.matrix, &system.node)
-            .and_then(|solver| solver.on(ranks, (&system.matrix, |_| [0.0; 3])))
-            .unwrap();
+        let rows = shared(&system.matrix, &system.node, ranks);
+        let own = of_rows(&system.matrix, &rows.needed());
+        let mut solver = Iterative::on(&own, rows).unwrap();
         let mut y = vec![0.0; x.len()];
         let multiply = || solver.multiply(&x, &mut y);
         pool.build().unwrap().install(multiply);

@@ -19,6 +19,7 @@ mod pieces;
 mod quadrature;
 mod ranks;
 mod ranks_contacts;
+mod ranks_implicit;
 mod ranks_parts;
 mod reactions;
 mod reductions;

@@ -6,20 +6,22 @@
 
 use std::cmp::Reverse;
 use std::ops::Range;
+use std::slice;
 use std::sync::Arc;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::part::Part;
 use carom_algebra::rotation::Rotation;
-use carom_algebra::solver::FactorStats;
+use carom_algebra::solver::{FactorStats, SharedRows};
 use carom_contact::Pairing;
 use carom_ranks::Ranks;
 
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
-use super::part_matrix::part_matrix;
+use super::part_matrix::{is_diagonal, rows_of_part};
 use super::tangent_solver::tangent_solver;
-use crate::choice::{self, Use, solvable};
+use crate::at_rows::AtRows;
+use crate::choice::{self, Use, choose_on_ranks, operator_on_ranks, rows_on_ranks, solvable};
 use crate::columns::HeldColumns;
 use crate::compliance::Compliance;
 use crate::costs::Work;
@@ -76,6 +78,9 @@ pub(super) struct Matrices {
     pub(super) held: HeldColumns,
     /// Those of the other parts together, with the rows and columns of held unknowns.
     pub(super) matrix: Option<Csr>,
+    /// The elements that give their rows here, and on several ranks the rows of each group.
+    pub(super) at: AtRows,
+    pub(super) rows: Vec<SharedRows>,
     /// Its parts without held unknowns, of each group that the iterations make anew; none before they are first taken from a new pattern.
     pub(super) free: Vec<Part>,
     /// The whole derivative of what bodies, inertia and loads give, without contact forces, not symmetric; none unless wanted.
@@ -240,7 +245,7 @@ impl Effective {
         y.fill(0.0);
         let Some(now) = &self.now else { return };
         if let Some(matrix) = &now.matrix {
-            matrix.multiply(x, y);
+            now.at.multiply(matrix, x, y);
         }
         now.held.add_product(x, y);
     }
@@ -254,8 +259,9 @@ impl Effective {
     /// y = K̂ x with that derivative, N.
     pub(super) fn whole_product(&self, x: &[f64], y: &mut Vec<f64>) {
         y.resize(x.len(), 0.0);
-        if let Some(whole) = self.now.as_ref().and_then(|now| now.whole.as_ref()) {
-            whole.multiply(x, y);
+        let Some(now) = &self.now else { return };
+        if let Some(whole) = &now.whole {
+            now.at.multiply(whole, x, y);
         }
     }
 
@@ -358,7 +364,7 @@ impl Matrices {
         let mut held = HeldColumns::default();
         let mut solver = match (first, coupled.is_empty()) {
             (_, true) => asked,
-            (0, false) => Some(tangent_solver(system, &iterated)),
+            (0, false) => Some(tangent_solver(system, &iterated, ranks)),
             // the counts are of one kind or the other
             (_, false) => Some(Solver::Direct),
         };
@@ -404,6 +410,8 @@ impl Matrices {
             compliance,
             held,
             matrix: None,
+            at: AtRows::all(),
+            rows: Vec::new(),
             free: Vec::new(),
             whole: None,
             solver,
@@ -428,31 +436,74 @@ fn linear_part(
     (diagonal, held): (&mut [f64], &mut HeldColumns),
 ) -> Result<Operator, Error> {
     let fixed = &system.fixed[part.clone()];
-    let Some(a) = part_matrix(system, part, map, between) else {
+    let follows = &system.nonlinear.follows;
+    let moves = follows.iter().any(|f| part.contains(&(f.unknown as usize)));
+    if is_diagonal(system, part, map) {
         let lumped = &system.mass.lumped[part.clone()];
         let masses: Vec<f64> = lumped.iter().map(|m| map.inertia.x * m).collect();
         diagonal[part.clone()].copy_from_slice(&masses);
         return Ok(Operator::diagonal(&masses, fixed));
-    };
-    for (place, entry) in diagonal[part.clone()].iter_mut().enumerate() {
-        *entry = a.get(place, place);
     }
-    let of = Use {
+    let mut of = Use {
         part: Some(part),
         inertia: map.inertia.x != 0.0,
         others,
         ranks,
     };
+    if let Some(operator) = linear_on_ranks((system, of), (map, between, moves), (diagonal, held))?
+    {
+        return Ok(operator);
+    }
+    if ranks.count() > 1 {
+        of.others = Some(Solver::Direct);
+    }
+    let a = rows_of_part((system, &AtRows::all()), part, map, between);
+    take_diagonal(&a, part, diagonal);
     let operator = solvable((system, of), part, &a, fixed, "effective matrix")?;
     let columns = modal_columns(system, part, damping_rate(map).x);
     let operator = operator
         .with_columns(&columns)
         .map_err(|cause| unsolvable(system, part, ("damping of modes", cause)))?;
-    let follows = &system.nonlinear.follows;
-    if follows.iter().any(|f| part.contains(&(f.unknown as usize))) {
+    if moves {
         held.append(&a, fixed, part.start);
     }
     Ok(operator)
+}
+
+fn take_diagonal(a: &Csr, part: &Range<usize>, diagonal: &mut [f64]) {
+    for (place, entry) in diagonal[part.clone()].iter_mut().enumerate() {
+        *entry = a.get(place, place);
+    }
+}
+
+/// The same over several ranks, each of which has some rows; none where a factor costs less.
+fn linear_on_ranks(
+    (system, of): (&System, Use),
+    (map, between, moves): (&StepMap, bool, bool),
+    (diagonal, held): (&mut [f64], &mut HeldColumns),
+) -> Result<Option<Operator>, Error> {
+    let Some(part) = of.part else { return Ok(None) };
+    let (parts, fixed) = (slice::from_ref(part), &system.fixed[part.clone()]);
+    let Some(rows) = rows_on_ranks((system, of), parts, &[]) else {
+        return Ok(None);
+    };
+    let at = AtRows::new(system, &[(parts, &rows)]);
+    let a = rows_of_part((system, &at), part, map, between);
+    let failed = |cause| unsolvable(system, part, ("effective matrix", cause));
+    let matrix = a.with_identity(fixed);
+    let solver = choose_on_ranks((system, of), &matrix, rows, parts).map_err(failed)?;
+    let Some(solver) = solver else {
+        return Ok(None);
+    };
+    take_diagonal(&a, part, diagonal);
+    at.complete(part, diagonal);
+    if moves {
+        // their columns have rows of all ranks
+        let whole = rows_of_part((system, &AtRows::all()), part, map, between);
+        held.append(&whole, fixed, part.start);
+    }
+    let operator = operator_on_ranks(system, solver, (&matrix, parts)).map_err(failed)?;
+    Ok(Some(operator))
 }
 
 /// The columns of the damping of modes in the matrix of a part, times the root of this factor of the damping.

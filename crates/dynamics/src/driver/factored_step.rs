@@ -74,6 +74,10 @@ fn fit(system: &System, maps: &Maps, between: bool) -> bool {
 impl Matrices {
     fn take_tangent_solver(&mut self, solver: Solver, retired: &mut Work) {
         self.solver = Some(solver);
+        if self.ranks.count() > 1 {
+            // a factor takes all rows, iterations some
+            self.matrix = None;
+        }
         let first = self.first;
         self.compliance.forget(|group| group >= first);
         for group in &mut self.operators.groups[first..] {

@@ -5,11 +5,13 @@ use std::ops::Range;
 use carom_algebra::csr::Csr;
 use carom_algebra::part::Part;
 use carom_algebra::pattern::Cliques;
+use carom_algebra::solver::{Iterative, SharedRows};
 use carom_bodies::Placement;
 
 use super::effective::{At, Matrices, Turning};
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
+use crate::at_rows::AtRows;
 use crate::choice::{self, Use};
 use crate::costs::Work;
 use crate::error::{Error, MeshNode};
@@ -34,6 +36,7 @@ impl Matrices {
         };
         a.clear();
         let assembled = self.assemble(system, at, &mut a);
+        let assembled = self.at.agree(assembled);
         match &mut self.whole {
             whole if !at.whole || first > 0 => *whole = None,
             Some(whole) => whole.copy_values(&a),
@@ -46,8 +49,11 @@ impl Matrices {
             .pairing
             .add_curvatures(forces, -turning.factor, (loads, at.apart), &mut a);
         for group in &mut self.operators.groups[first..] {
-            for i in group.parts.iter().cloned().flatten() {
-                self.diagonal[i] = a.get(i, i);
+            for part in &group.parts {
+                for i in part.clone() {
+                    self.diagonal[i] = a.get(i, i);
+                }
+                self.at.complete(part, &mut self.diagonal);
             }
         }
         let factored = assembled.and_then(|()| self.factorise(system, at, &a, retired));
@@ -124,8 +130,16 @@ impl Matrices {
                         others: self.solver,
                         ranks: &self.ranks,
                     };
-                    let none = vec![false; free.n];
-                    let new = choice::operator((system, of), free, &none, &nodes);
+                    let new = match self.rows.get(k) {
+                        Some(rows) => Iterative::on(free, rows.clone()).and_then(|solver| {
+                            let of = (&*free, &group.parts[..]);
+                            choice::operator_on_ranks(system, Box::new(solver), of)
+                        }),
+                        None => {
+                            let none = vec![false; free.n];
+                            choice::operator((system, of), free, &none, &nodes)
+                        }
+                    };
                     new.map(|new| *other = Some(new))
                 }
             };
@@ -225,10 +239,12 @@ impl Matrices {
             retire(operator, retired);
         }
         self.coupled = coupled;
+        self.take_rows(system, &wanted);
         let mut cliques = Cliques::new();
         let n = system.unknowns();
-        for (body, &part) in system.bodies.iter().zip(&system.part_of_body) {
-            if self.iterated[part] {
+        for (k, part) in system.part_of_body.iter().enumerate() {
+            if self.iterated[*part] {
+                let body = self.at.body(system, k);
                 push_cliques(body, &system.unknowns, &(0..n), &mut cliques);
             }
         }
@@ -236,18 +252,42 @@ impl Matrices {
         for row in self.coupled.iter().flatten() {
             cliques.push(row);
         }
-        self.matrix = Some(Csr::from_cliques(n, &cliques));
+        self.matrix = Some(self.at.matrix(&(0..n), &cliques));
         (self.whole, self.free) = (None, Vec::new());
+    }
+
+    /// The rows that this rank has of the groups of these parts, and the elements that give them.
+    fn take_rows(&mut self, system: &System, groups: &[Vec<Range<usize>>]) {
+        let of = Use {
+            part: None,
+            inertia: true,
+            others: self.solver,
+            ranks: &self.ranks,
+        };
+        let rows = groups.iter().zip(&self.coupled);
+        let rows = rows.map(|(parts, coupled)| choice::rows_on_ranks((system, of), parts, coupled));
+        let rows: Option<Vec<SharedRows>> = rows.collect();
+        self.rows = rows.unwrap_or_default();
+        let needed = groups.iter().map(Vec::as_slice).zip(&self.rows);
+        let needed: Vec<_> = needed.collect();
+        if needed.is_empty() {
+            self.at = AtRows::all();
+        } else if !self.at.are_of(&needed) {
+            self.at = AtRows::new(system, &needed);
+        }
     }
 
     /// `inertia.x M + force.x K + damping` of the parts that are not linear, into a matrix of zeros.
     fn assemble(&self, system: &System, at: &At, a: &mut Csr) -> Result<(), Error> {
-        for (k, body) in system.bodies.iter().enumerate() {
+        let mut history = Vec::new();
+        for k in 0..system.bodies.len() {
             if !self.iterated[system.part_of_body[k]] {
                 continue;
             }
+            let body = self.at.body(system, k);
             let map = &at.maps.all()[system.zone_of_body[k]];
             let rate = damping_rate(map).x;
+            let of_all = &at.history[system.nonlinear.histories[k].clone()];
             let placement = Placement {
                 u: at.u,
                 v: at.v,
@@ -257,7 +297,7 @@ impl Matrices {
                     true => at.dt,
                     false => map.instant(at.dt),
                 },
-                old: &at.history[system.nonlinear.histories[k].clone()],
+                old: self.at.history(k, of_all, &mut history),
             };
             body.add_tangent(&placement, [map.force.x, rate], a)?;
             let damping = system.nonlinear.damping.get(k).copied().unwrap_or_default();

@@ -67,7 +67,9 @@ impl Driver {
         let solved = self.iterate(false);
         match solved {
             // elements inside out: once more from another guess
-            Err(Error::Body(_)) if !self.maps.is_static() && !self.is_affine() => {
+            Err(Error::Body(_) | Error::OnRank { .. })
+                if !self.maps.is_static() && !self.is_affine() =>
+            {
                 self.iterate(true)
             }
             other => other,

@@ -1,16 +1,18 @@
 //! What solves with tangents: a factor or iterations.
 
 use std::cmp::Reverse;
+use std::slice;
 
 use carom_ranks::Ranks;
 
-use super::part_matrix::part_matrix;
-use crate::choice::{Chosen, FEW, Use, choose};
+use super::part_matrix::{is_diagonal, rows_of_part};
+use crate::at_rows::AtRows;
+use crate::choice::{Chosen, FEW, Use, choose, choose_on_ranks, rows_on_ranks};
 use crate::system::{Maps, Solver, System};
 
 /// What solves with the tangents of these parts: as asked, else what is predicted to cost less for the largest of them, undeformed, in a step of the size
 /// that the model names. So a run that goes on from a checkpoint chooses the same.
-pub(super) fn tangent_solver(system: &System, iterated: &[bool]) -> Solver {
+pub(super) fn tangent_solver(system: &System, iterated: &[bool], ranks: &Ranks) -> Solver {
     let asked = system.nonlinear.iteration.solver;
     if asked != Solver::Auto {
         return asked;
@@ -24,20 +26,41 @@ pub(super) fn tangent_solver(system: &System, iterated: &[bool]) -> Solver {
     };
     let maps = Maps::new(system, system.dt, system.dt);
     let map = maps.of(part.start);
-    let Some(matrix) = part_matrix(system, part, map, false) else {
+    if is_diagonal(system, part, map) {
         return Solver::Direct;
-    };
-    let matrix = matrix.with_identity(&system.fixed[part.clone()]);
-    let nodes = &system.unknowns.node_of_each()[part.clone()];
+    }
     let of = Use {
         part: None,
         inertia: map.inertia.x != 0.0,
         others: None,
-        ranks: &Ranks::alone(),
+        ranks,
     };
+    let fixed = &system.fixed[part.clone()];
+    let parts = slice::from_ref(part);
     // what is wrong with the matrix the tangents themselves will say
-    match choose((system, of), &matrix, nodes) {
-        Ok(Chosen::Iterative(_)) => Solver::Iterative,
-        Ok(Chosen::Direct(_)) | Err(_) => Solver::Direct,
+    let iterative = match rows_on_ranks((system, of), parts, &[]) {
+        Some(rows) => {
+            let at = AtRows::new(system, &[(parts, &rows)]);
+            let matrix = rows_of_part((system, &at), part, map, false);
+            let matrix = matrix.with_identity(fixed);
+            matches!(
+                choose_on_ranks((system, of), &matrix, rows, parts),
+                Ok(Some(_))
+            )
+        }
+        None => {
+            let matrix = rows_of_part((system, &AtRows::all()), part, map, false);
+            let matrix = matrix.with_identity(fixed);
+            let nodes = &system.unknowns.node_of_each()[part.clone()];
+            matches!(
+                choose((system, of), &matrix, nodes),
+                Ok(Chosen::Iterative(_))
+            )
+        }
+    };
+    if iterative {
+        Solver::Iterative
+    } else {
+        Solver::Direct
     }
 }
