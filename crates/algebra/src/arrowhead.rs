@@ -138,7 +138,10 @@ fn add_scaled(factor: f64, x: &[f64; ROWS], y: &mut [f64; ROWS]) {
 /// x · y, lanes added by halves.
 #[inline(always)]
 fn dot(x: &[f64; ROWS], y: &[f64; ROWS]) -> f64 {
-    let mut products: [f64; ROWS] = std::array::from_fn(|lane| x[lane] * y[lane]);
+    let mut products = [0.0; ROWS];
+    for lane in 0..ROWS {
+        products[lane] = x[lane] * y[lane];
+    }
     let mut half = ROWS / 2;
     while half > 0 {
         for lane in 0..half {

@@ -94,6 +94,12 @@ impl Csr {
         (&self.col[range.clone()], &self.val[range])
     }
 
+    /// Columns and values of some rows, one row after the other.
+    pub fn entries(&self, rows: Range<usize>) -> (&[u32], &[f64]) {
+        let range = self.row_ptr[rows.start]..self.row_ptr[rows.end];
+        (&self.col[range.clone()], &self.val[range])
+    }
+
     /// Entry (i, j); zero where none is stored.
     pub fn get(&self, i: usize, j: usize) -> f64 {
         let (columns, values) = self.row(i);

@@ -235,6 +235,6 @@ pub fn whole_on_ranks(built: &Built) -> Option<String> {
         None => why_not_on_ranks(&built.system)?.to_string(),
     };
     Some(format!(
-        "each rank computes all elements and contacts: ranks share none with {why}; where `time.solver` is iterative they share its products"
+        "each rank computes all elements and contacts: ranks share none with {why}; where steps have iterations (`time.solver`), they share the rows of their matrices, tangents and products"
     ))
 }

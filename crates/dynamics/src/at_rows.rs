@@ -18,6 +18,7 @@ use crate::system::System;
 pub(crate) struct AtRows {
     /// Rows of the system that are needed; empty where all are.
     needed: Vec<bool>,
+    /// The same as ranges, group by group.
     of: Vec<Range<usize>>,
     /// Unknowns of the system whose rows are this rank's own.
     own: Vec<Range<usize>>,

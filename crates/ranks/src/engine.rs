@@ -9,7 +9,7 @@ pub struct OwnRows<'a> {
     /// Column of each entry.
     pub columns: Vec<i32>,
     /// Entries, N/m.
-    pub values: Vec<f64>,
+    pub values: &'a [f64],
     /// Unknowns of a node; 1 where nodes have different numbers of them.
     pub block: usize,
     /// Places of the own nodes, as many coordinates as unknowns, m; empty where unknowns are not displacements alone. Rigid motions follow

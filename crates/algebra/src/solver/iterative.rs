@@ -348,25 +348,25 @@ impl Iterative {
 }
 
 /// The rows that a rank has for an engine, and the places of their nodes.
-fn own_rows<'a>(matrix: &Csr, rows: &'a SharedRows, nodes: &[[f64; 3]]) -> OwnRows<'a> {
+fn own_rows<'a>(matrix: &'a Csr, rows: &'a SharedRows, nodes: &[[f64; 3]]) -> OwnRows<'a> {
     let dim = rows.size;
     // two or three displacements at each node
     let alike = (2..=3).contains(&dim);
-    let count: usize = rows.engine_rows().map(|i| matrix.row(i).0.len()).sum();
+    let own = rows.engine_rows();
+    let (columns, values) = matrix.entries(own.clone());
+    let mut offsets = vec![0];
+    for i in own {
+        let before = offsets[offsets.len() - 1];
+        offsets.push(before + matrix.row(i).0.len() as i32);
+    }
     let mut own = OwnRows {
         starts: &rows.engine,
-        offsets: vec![0],
-        columns: Vec::with_capacity(count),
-        values: Vec::with_capacity(count),
+        offsets,
+        columns: columns.iter().map(|j| *j as i32).collect(),
+        values,
         block: if alike { dim } else { 1 },
         places: Vec::new(),
     };
-    for i in rows.engine_rows() {
-        let (columns, values) = matrix.row(i);
-        own.columns.extend(columns.iter().map(|j| *j as i32));
-        own.values.extend_from_slice(values);
-        own.offsets.push(own.values.len() as i32);
-    }
     if alike {
         own.places = nodes.iter().flat_map(|x| x[..dim].to_vec()).collect();
     }

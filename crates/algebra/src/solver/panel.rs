@@ -2,10 +2,10 @@
 //!
 //! A panel is a trapezoid of `rows` rows and `columns` columns, column-major: a lower triangle over a rectangle. The columns are
 //! taken a few at a time, so that the right-hand side is read and written once for several of them; the loops are plain and
-//! become vector code of the instruction set `S` when the caller runs them inside `Simd::vectorize`.
+//! become vector code of the instruction set `S` when the caller runs them inside `Simd::vectorize`. Arrays are filled by loops
+//! too: a closure of `array::map` or `from_fn` is no part of that, and calls a function for each instruction of the set.
 
 use pulp::Simd;
-use std::array::from_fn;
 
 /// Right-hand sides that travel together: as many as a block of eight columns lets stay in 32 registers of eight numbers. With eight
 /// of them panels come twice as often from memory and take twice the time, with 32 registers overflow.
@@ -33,7 +33,10 @@ pub(crate) fn add_dots<S: Simd, const B: usize>(
     sums: &mut [S::f64s; B],
 ) {
     let (xs, x_tail) = S::as_simd_f64s(x);
-    let wide: [&[S::f64s]; B] = from_fn(|b| &S::as_simd_f64s(y[b]).0[..xs.len()]);
+    let mut wide: [&[S::f64s]; B] = [&[]; B];
+    for b in 0..B {
+        wide[b] = &S::as_simd_f64s(y[b]).0[..xs.len()];
+    }
     let mut own = *sums;
     for i in 0..xs.len() {
         for b in 0..B {
@@ -214,17 +217,33 @@ fn backward_block<S: Simd, const B: usize>(
 fn dots<S: Simd, const B: usize>(simd: S, columns: &[&[f64]; B], x: &[f64]) -> [f64; B] {
     let mut sums = [simd.splat_f64s(0.0); B];
     add_dots(simd, x, *columns, &mut sums);
-    sums.map(|sum| simd.reduce_sum_f64s(sum))
+    total(simd, &sums)
+}
+
+/// Sums of the lanes.
+#[inline(always)]
+pub(crate) fn total<S: Simd, const B: usize>(simd: S, sums: &[S::f64s; B]) -> [f64; B] {
+    let mut total = [0.0; B];
+    for b in 0..B {
+        total[b] = simd.reduce_sum_f64s(sums[b]);
+    }
+    total
 }
 
 /// Columns j .. j + B of a panel, each from row j + B on.
 #[inline(always)]
 fn below<const B: usize>(panel: &[f64], rows: usize, j: usize) -> [&[f64]; B] {
-    from_fn(|b| &panel[(j + b) * rows + j + B..(j + b + 1) * rows])
+    let mut columns: [&[f64]; B] = [&[]; B];
+    for b in 0..B {
+        columns[b] = &panel[(j + b) * rows + j + B..(j + b + 1) * rows];
+    }
+    columns
 }
 
 #[cfg(test)]
 mod tests {
+    use std::array::from_fn;
+
     use super::*;
     use pulp::{Arch, Scalar, WithSimd};
 

@@ -34,6 +34,8 @@ pub struct Shape<'a> {
     point: &'a Point,
     /// Number of nodes of the point: where those of the face begin in a [`Form`].
     first: usize,
+    /// Number of all nodes; the vectors behind them are zero.
+    nodes: usize,
     gap: f64,
     n: Vec3,
     r: Vec3,
@@ -68,10 +70,12 @@ impl<'a> Shape<'a> {
             false => reciprocal.map(|t| t.dot(&r)),
         };
         let (directions, free) = free_directions(foot);
+        let first = point.carriers().count();
         let mut made = Shape {
             foot,
             point,
-            first: point.carriers().count(),
+            first,
+            nodes: first + foot.element().nodes,
             gap,
             n,
             r,
@@ -103,18 +107,21 @@ impl<'a> Shape<'a> {
         self.compliance = inverse(&stiffness, self.free)
             .or_else(|| inverse(&metric, self.free))
             .unwrap_or_default();
-        let right: [Form; 2] = [0, 1].map(|k| match k < self.free {
-            true => sum(
-                &self.primary(&self.gradient(k), &self.r),
-                1.0,
-                &self.relative(&self.tangent(k)),
-            ),
-            false => [Vec3::zeros(); 2 * NODES],
-        });
-        for k in 0..self.free {
-            for (l, right) in right.iter().enumerate().take(self.free) {
-                self.motion[k] = sum(&self.motion[k], self.compliance[k][l], right);
+        for l in 0..self.free {
+            let mut right = self.primary(&self.gradient(l), &self.r);
+            self.add(1.0, &self.relative(&self.tangent(l)), &mut right);
+            for k in 0..self.free {
+                for (motion, right) in self.motion[k].iter_mut().zip(&right).take(self.nodes) {
+                    *motion += right * self.compliance[k][l];
+                }
             }
+        }
+    }
+
+    /// a += factor b.
+    fn add(&self, factor: f64, b: &Form, a: &mut Form) {
+        for (a, b) in a.iter_mut().zip(b).take(self.nodes) {
+            *a += b * factor;
         }
     }
 
@@ -122,7 +129,7 @@ impl<'a> Shape<'a> {
     pub fn turn(&self) -> Form {
         let mut form = [Vec3::zeros(); 2 * NODES];
         for axis in 0..self.foot.dim() {
-            form = sum(&form, -self.overhang[axis], &self.turning(axis));
+            self.add(-self.overhang[axis], &self.turning(axis), &mut form);
         }
         form
     }
@@ -135,7 +142,7 @@ impl<'a> Shape<'a> {
             let mut form = self.slide(axis);
             for (other, turning) in turning.iter().enumerate().take(dim) {
                 let metric = self.reciprocal[axis].dot(&self.reciprocal[other]);
-                form = sum(&form, 0.5 * self.gap * metric, turning);
+                self.add(0.5 * self.gap * metric, turning, &mut form);
             }
             block.add(-factor, &turning[axis], &form);
         }
@@ -148,7 +155,7 @@ impl<'a> Shape<'a> {
                         bend += self.overhang[axis] * self.twist(axis, k, l);
                     }
                 }
-                form = sum(&form, 0.5 * self.n.dot(&bend), &self.motion[l]);
+                self.add(0.5 * self.n.dot(&bend), &self.motion[l], &mut form);
             }
             block.add(-factor, &form, &self.motion[k]);
         }
@@ -189,8 +196,9 @@ impl<'a> Shape<'a> {
             );
         }
         let second = self.along(0, |axis| self.second(axis, 0));
-        let mixed = sum(&self.primary(&second, &self.r), 1.0, &self.relative(&bend));
-        let mixed = sum(&mixed, -2.0, &self.primary(&gradient, &along));
+        let mut mixed = self.primary(&second, &self.r);
+        self.add(1.0, &self.relative(&bend), &mut mixed);
+        self.add(-2.0, &self.primary(&gradient, &along), &mut mixed);
         block.add(value, &mixed, &self.motion[0]);
         // The third derivative along an edge is zero: edges are parabolas at most.
         let own = -3.0 * bend.dot(&along);
@@ -207,11 +215,12 @@ impl<'a> Shape<'a> {
         let direction = self.reciprocal[axis];
         let mut form = self.relative(&direction);
         for k in 0..self.free {
-            form = sum(&form, -direction.dot(&self.tangent(k)), &self.motion[k]);
+            let along = direction.dot(&self.tangent(k));
+            self.add(-along, &self.motion[k], &mut form);
         }
         for other in 0..self.foot.dim() {
             let turning = self.tangent_motion(other, &direction);
-            form = sum(&form, -self.overhang[other], &turning);
+            self.add(-self.overhang[other], &turning, &mut form);
         }
         form
     }
@@ -221,7 +230,7 @@ impl<'a> Shape<'a> {
         let mut form = self.primary(&self.gradients[axis], direction);
         for k in 0..self.free {
             let bend = combination(&self.foot.x, &self.second(axis, k));
-            form = sum(&form, direction.dot(&bend), &self.motion[k]);
+            self.add(direction.dot(&bend), &self.motion[k], &mut form);
         }
         form
     }
@@ -313,11 +322,6 @@ fn second_derivatives(foot: &Foothold) -> [[[f64; NODES]; 2]; 2] {
 
 fn combination(x: &[[f64; 3]; NODES], weights: &[f64; NODES]) -> Vec3 {
     Vec3::from(map::point(x, weights))
-}
-
-/// a + factor b.
-fn sum(a: &Form, factor: f64, b: &Form) -> Form {
-    std::array::from_fn(|i| a[i] + b[i] * factor)
 }
 
 /// The vectors of the tangent space with τ^α·τ_β = δ; n is the unit normal.

@@ -40,6 +40,7 @@ mod iterated;
 mod joined;
 mod landing;
 mod leapfrog;
+mod linear_part;
 pub mod linked;
 mod linking;
 mod links;

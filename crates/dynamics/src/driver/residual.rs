@@ -1,5 +1,6 @@
 //! The residual of an iteration, and how far it is from nothing.
 
+use carom_algebra::reduce::norm_squared;
 use carom_algebra::unknowns::Kind;
 use carom_bodies::{Body, Reduced};
 use carom_mesh::ElementId;
@@ -134,7 +135,7 @@ impl Driver {
     /// Largest norm of the forces that balance, N.
     pub(super) fn scale_of_forces(&self) -> f64 {
         let vectors = &self.vectors;
-        let norm = |f: &[f64]| f.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let norm = |f: &[f64]| norm_squared(f).sqrt();
         let contact = self.maps.contact().abs() * norm(&vectors.contact);
         let forces = [
             &vectors.load,
