@@ -2,10 +2,11 @@
 //!
 //! A panel is a trapezoid of `rows` rows and `columns` columns, column-major: a lower triangle over a rectangle. The columns are
 //! taken a few at a time, so that the right-hand side is read and written once for several of them; the loops are plain and
-//! become vector code of the instruction set `S` when the caller runs them inside `Simd::vectorize`. Arrays are filled by loops
-//! too: a closure of `array::map` or `from_fn` is no part of that, and calls a function for each instruction of the set.
+//! become vector code of the instruction set `S` when the caller runs them inside `Simd::vectorize`. A closure of `array::map` is no
+//! part of that, and calls a function for each instruction of the set: sums of lanes are taken in loops.
 
 use pulp::Simd;
+use std::array::from_fn;
 
 /// Right-hand sides that travel together: as many as a block of eight columns lets stay in 32 registers of eight numbers. With eight
 /// of them panels come twice as often from memory and take twice the time, with 32 registers overflow.
@@ -33,10 +34,7 @@ pub(crate) fn add_dots<S: Simd, const B: usize>(
     sums: &mut [S::f64s; B],
 ) {
     let (xs, x_tail) = S::as_simd_f64s(x);
-    let mut wide: [&[S::f64s]; B] = [&[]; B];
-    for b in 0..B {
-        wide[b] = &S::as_simd_f64s(y[b]).0[..xs.len()];
-    }
+    let wide: [&[S::f64s]; B] = from_fn(|b| &S::as_simd_f64s(y[b]).0[..xs.len()]);
     let mut own = *sums;
     for i in 0..xs.len() {
         for b in 0..B {
@@ -217,33 +215,22 @@ fn backward_block<S: Simd, const B: usize>(
 fn dots<S: Simd, const B: usize>(simd: S, columns: &[&[f64]; B], x: &[f64]) -> [f64; B] {
     let mut sums = [simd.splat_f64s(0.0); B];
     add_dots(simd, x, *columns, &mut sums);
-    total(simd, &sums)
-}
-
-/// Sums of the lanes.
-#[inline(always)]
-pub(crate) fn total<S: Simd, const B: usize>(simd: S, sums: &[S::f64s; B]) -> [f64; B] {
-    let mut total = [0.0; B];
+    let mut dots = [0.0; B];
     for b in 0..B {
-        total[b] = simd.reduce_sum_f64s(sums[b]);
+        dots[b] = simd.reduce_sum_f64s(sums[b]);
     }
-    total
+    dots
 }
 
 /// Columns j .. j + B of a panel, each from row j + B on.
 #[inline(always)]
 fn below<const B: usize>(panel: &[f64], rows: usize, j: usize) -> [&[f64]; B] {
-    let mut columns: [&[f64]; B] = [&[]; B];
-    for b in 0..B {
-        columns[b] = &panel[(j + b) * rows + j + B..(j + b + 1) * rows];
-    }
-    columns
+    // from a loop the columns of several right-hand sides are gathered row by row, which takes twice the time
+    from_fn(|b| &panel[(j + b) * rows + j + B..(j + b + 1) * rows])
 }
 
 #[cfg(test)]
 mod tests {
-    use std::array::from_fn;
-
     use super::*;
     use pulp::{Arch, Scalar, WithSimd};
 

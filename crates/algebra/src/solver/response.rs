@@ -78,26 +78,21 @@ pub(super) fn multiply<S: Simd, const B: usize>(
     let (mut x, mut y) = (Cursor::new(row), columns.map(Cursor::new));
     let mut sums = [simd.splat_f64s(0.0); B];
     while let Some((start, values)) = x.take() {
-        let (mut found, mut all): ([&[f64]; B], bool) = ([&[]; B], true);
-        for b in 0..B {
-            let own = y[b].take_at(start);
-            all &= own.is_some();
-            found[b] = own.unwrap_or_default();
-        }
-        if all {
+        let found: [Option<&[f64]>; B] = y.each_mut().map(|cursor| cursor.take_at(start));
+        if found.iter().all(Option::is_some) {
+            let found = found.map(Option::unwrap_or_default);
             panel::add_dots(simd, values, found, &mut sums);
             continue;
         }
-        // one that was not found adds nothing
-        for b in 0..B {
-            if found[b].len() == values.len() {
-                let mut one = [sums[b]];
-                panel::add_dots(simd, values, [found[b]], &mut one);
-                sums[b] = one[0];
+        for (found, sum) in found.into_iter().zip(&mut sums) {
+            if let Some(found) = found {
+                let mut one = [*sum];
+                panel::add_dots(simd, values, [found], &mut one);
+                *sum = one[0];
             }
         }
     }
-    panel::total(simd, &sums)
+    sums.map(|sum| simd.reduce_sum_f64s(sum))
 }
 
 /// A place in a response: before one of its segments.
