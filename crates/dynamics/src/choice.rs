@@ -8,11 +8,11 @@ use carom_algebra::solver::{Cholesky, FactorStats, Iterative, Ordering, SharedRo
 use carom_contact::{Pairing, Search};
 use carom_ranks::Ranks;
 
-use crate::at_rows::{graph_of_nodes, shared_rows};
+use crate::at_rows::{graph_of_nodes, groups, shared_rows};
 use crate::distributed::Distributed;
 use crate::error::Error;
 use crate::iterated::Iterated;
-use crate::operator::{Operator, groups, unsolvable};
+use crate::operator::{Operator, unsolvable};
 use crate::system::{Solver, System};
 
 /// Unknowns below which a factor is always cheap.

@@ -7,7 +7,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::{Cholesky, FactorStats, Ordering, Response, SparseRow, gram};
 
-use crate::at_rows::AtRows;
+use crate::at_rows::{AtRows, groups};
 use crate::distributed::Distributed;
 use crate::error::{Error, MeshNode};
 use crate::iterated::Iterated;
@@ -418,19 +418,6 @@ impl Operators {
         let operators = self.groups.iter().filter_map(|g| g.operator.as_ref());
         operators.filter_map(Operator::stats)
     }
-}
-
-/// Numbers without gaps of the nodes of unknowns, nodes ascending.
-pub(crate) fn groups(nodes: &[u32]) -> Vec<u32> {
-    let mut number = 0;
-    let mut last = nodes.first().copied();
-    let group = |&node: &u32| {
-        if last != Some(node) {
-            (last, number) = (Some(node), number + 1);
-        }
-        number
-    };
-    nodes.iter().map(group).collect()
 }
 
 /// Each of some parts for itself.
