@@ -162,7 +162,11 @@ except KeyboardInterrupt:
 """
     import signal
 
-    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True)
+    # what was started in the background of a shell ignores the signal, and so do its children
+    def heed():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    process = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, preexec_fn=heed)
     assert process.stdout.readline() == "running\n"
     process.send_signal(signal.SIGINT)
     out, _ = process.communicate(timeout=60)
