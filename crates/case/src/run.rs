@@ -246,6 +246,7 @@ pub(crate) fn settings(
         reference: reference(built),
         zoning: built.zoned.as_ref().map(Zoning::of),
         warnings: built.warnings.clone(),
+        doubts: built.doubts.clone(),
         checkpoints: Checkpoints {
             every: checkpoint.every.map(|every| every.0),
             wall: checkpoint.least_wall().map(Duration::from_secs_f64),

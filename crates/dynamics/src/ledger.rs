@@ -145,6 +145,8 @@ pub struct Ledger {
     pub largest_angular_momentum: f64,
     /// Largest energy so far beyond that at the start and the work from outside, J: what the scheme balances has gained.
     pub largest_gain: f64,
+    /// Largest work of loads, supports and obstacles so far, J.
+    pub largest_given: f64,
     /// Largest energy that the scheme has made since the start so far, J: minus its dissipation.
     pub largest_made: f64,
     /// Largest work of the contacts since the start so far, J.
@@ -386,10 +388,14 @@ impl Ledger {
         self.close(energies, identity);
     }
 
+    /// The step that [`Ledger::add`] then closes is static, or not.
+    pub(crate) fn begin_step(&mut self, is_static: bool) {
+        self.is_static = is_static;
+    }
+
     /// A static step: the work of the loads is a size that residuals are compared with, as rigid motions take it, and leave no
     /// energy.
     pub(crate) fn end_static_step(&mut self) {
-        self.is_static = true;
         self.largest_energy = self.largest_energy.max(self.balance.work_loads.abs());
     }
 
@@ -443,11 +449,19 @@ impl Ledger {
 
     /// The largest terms so far.
     fn follow(&mut self) {
-        self.largest_energy = self.largest_energy.max(self.balance.energy());
+        // a spring that pulls at elongation zero has a negative energy beyond
+        let energy = self.balance.kinetic + self.balance.strain.max(0.0);
+        self.largest_energy = self.largest_energy.max(energy);
         self.largest_hourglass = self.largest_hourglass.max(self.balance.hourglass);
         self.largest_internal = self.largest_internal.max(self.balance.internal());
-        let gain = self.balance.balanced() - self.initial.balanced() - self.balance.work_given();
+        let mut gain =
+            self.balance.balanced() - self.initial.balanced() - self.balance.work_given();
+        if self.is_static {
+            // what presses bodies into each other at the start is released by the contact forces: an interference
+            gain -= self.balance.work_contact;
+        }
         self.largest_gain = self.largest_gain.max(gain);
+        self.largest_given = self.largest_given.max(self.balance.work_given());
         self.largest_made = self.largest_made.max(-self.balance.dissipation_scheme);
         self.largest_contact_work = self.largest_contact_work.max(self.balance.work_contact);
         self.largest_excess = self.largest_excess.max(-self.balance.scheme_energy);

@@ -5,6 +5,7 @@
 //! printing.
 
 mod alike;
+mod assembly_energy;
 mod at_rows;
 mod blocks;
 mod choice;
@@ -42,6 +43,7 @@ mod update;
 mod watch;
 
 pub use alike::Alike;
+pub use assembly_energy::{AssemblyEnergies, AssemblyEnergy};
 use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;

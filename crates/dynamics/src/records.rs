@@ -54,6 +54,10 @@ pub struct ContactRecord {
     pub energy_crushed: f64,
     /// Energy that friction has taken so far, J.
     rubbed: Sum,
+    /// Work of the normal forces and of the impulses so far, beyond that of a moving obstacle, J.
+    worked: Sum,
+    /// Largest such work so far, J: what the contact has made at most.
+    pub largest_work: f64,
     /// Most nodes at the end of a step whose supports are partly closed; see [`ContactReport::mixed`].
     pub mixed: u64,
     /// Total force and force on the secondary body in the last step as they enter impulses, N.
@@ -151,6 +155,12 @@ impl ContactRecord {
             0 => 0.0,
             due => 2.0 * (due + self.hasty_closings) as f64 / due as f64,
         }
+    }
+
+    /// Work of the normal forces and of the impulses on the bodies so far, beyond that of a moving obstacle, J: negative where closing
+    /// takes energy.
+    pub fn work(&self) -> f64 {
+        self.worked.get()
     }
 
     /// Energy that friction has taken so far, J: its work on what slides, which wears it off.
@@ -314,6 +324,8 @@ impl Records {
         record.later = later;
         record.defect.add(report.persistency_defect);
         record.rubbed.add(report.friction_loss);
+        record.worked.add(step.work);
+        record.largest_work = record.largest_work.max(record.worked.get());
         record.status_changes += report.status_changes as u64;
         if report.status_changes > 0 {
             let known = (&mut self.opened[..], &self.loose[..]);

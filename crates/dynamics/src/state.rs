@@ -5,6 +5,7 @@ use carom_system::{Motion, System};
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
+use crate::assembly_energy::AssemblyEnergies;
 use crate::control::Control;
 use crate::exchange::Exchange;
 use crate::impact::Impact;
@@ -38,6 +39,8 @@ pub struct State {
     pub records: Records,
     /// Momentum that contacts have given to the bodies since the start.
     pub exchange: Exchange,
+    /// Energies of the assemblies since the start of the dynamics.
+    pub assemblies: AssemblyEnergies,
     /// Shapes of the elements since their frequencies were last looked at, of an explicit scheme.
     pub shapes: Shapes,
 }
@@ -218,6 +221,7 @@ impl State {
             && self.links.are_of(system)
             && self.records.are_of(system)
             && self.exchange.is_of(system, self.step)
+            && self.assemblies.are_of(system)
             && self.shapes.are_of(system);
         let cause = match (fits, self.time >= 0.0 && self.time.is_finite()) {
             (true, true) => return Ok(()),
@@ -306,6 +310,7 @@ pub(crate) fn state_without_motion(system: &System) -> State {
         ledger: Ledger::default(),
         records: Records::default(),
         exchange: Exchange::default(),
+        assemblies: AssemblyEnergies::default(),
         shapes: Shapes::default(),
     }
 }

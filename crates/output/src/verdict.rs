@@ -113,6 +113,7 @@ impl Line {
     pub fn text(&self) -> String {
         match self.grade {
             Grade::Good => self.sentence.clone(),
+            _ if self.remedy.is_empty() => self.sentence.clone(),
             Grade::Look | Grade::Bad => format!("{}; {}", self.sentence, self.remedy),
         }
     }

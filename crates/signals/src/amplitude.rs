@@ -127,6 +127,11 @@ impl Amplitude {
         knots.all(|knot| knot.c == [first, 0.0, 0.0, 0.0])
     }
 
+    /// Times between which it is one polynomial, s, ascending.
+    pub fn knots(&self) -> impl Iterator<Item = f64> + '_ {
+        self.knots.iter().map(|knot| knot.time)
+    }
+
     /// Times of the first and of the last knot, s.
     pub fn span(&self) -> [f64; 2] {
         let time = |knot: Option<&Knot>| knot.map_or(0.0, |knot| knot.time);

@@ -10,6 +10,7 @@ use carom_contact::{Contact, Frames, Places};
 use carom_mesh::Bounds;
 use carom_schemes::Scheme;
 
+use crate::assemblies::Assemblies;
 use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
 use crate::error::Error;
 use crate::initial::settle;
@@ -251,7 +252,8 @@ impl System {
             MomentAbout::of(model, (contact, &faces[..]), of, &levers)
         });
         let moments = moments.collect::<Result<_, _>>()?;
-        let system = System {
+        let mut system = System {
+            assemblies: Assemblies::default(),
             supports,
             levers,
             undeformed,
@@ -303,6 +305,7 @@ impl System {
             initial_velocity,
             mesh: Arc::new(model.mesh),
         };
+        system.assemblies = Assemblies::of(&system);
         Ok((system, model.bodies, model.contacts))
     }
 }

@@ -4,6 +4,7 @@
 //! system. No step is taken here.
 
 mod adaptive;
+mod assemblies;
 mod bare;
 mod between;
 mod build;
@@ -38,6 +39,7 @@ mod system;
 mod turning;
 
 pub use adaptive::{Adaptive, Closing};
+pub use assemblies::{Assemblies, Assembly};
 pub use cliques::push_cliques;
 pub use contacts::sides;
 pub use error::Error;

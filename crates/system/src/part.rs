@@ -237,6 +237,7 @@ impl System {
             has_springs: self.has_springs,
             has_dashpots: self.has_dashpots,
             nodes_of_whole: self.nodes_of_whole,
+            assemblies: self.assemblies.clone(),
             diagonals: self.diagonals.clone(),
             body_masses: self.body_masses.iter().map(of_body).collect(),
             mass: Mass::of_diagonal(to.pick(&self.mass.lumped)),

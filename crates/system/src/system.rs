@@ -11,6 +11,7 @@ use carom_mesh::{Face, Mesh};
 use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
+use crate::assemblies::Assemblies;
 use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
@@ -44,6 +45,8 @@ pub struct System {
     pub parts: Vec<Range<usize>>,
     /// The part of each body.
     pub part_of_body: Vec<usize>,
+    /// The parts that may act on each other, and the frames in which their energies are told.
+    pub assemblies: Assemblies,
     /// Whether moments of the forces on the nodes of each part are about their undeformed places: those of parts whose bodies all
     /// have small displacements, point masses and springs aside. Their internal forces have no moment about these.
     pub undeformed: Vec<bool>,

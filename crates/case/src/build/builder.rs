@@ -16,6 +16,8 @@ pub(super) struct Builder<'a> {
     pub(super) case: &'a Case,
     pub(super) problems: Vec<Problem>,
     pub(super) warnings: Vec<String>,
+    /// Those of them that concern the result.
+    pub(super) doubts: Vec<String>,
     /// Name of each contact with the damped law, and twice the rate of its spring against the elements behind it, 1/s.
     pub(super) springs: Vec<(String, f64)>,
     /// Functions of time.
@@ -36,6 +38,7 @@ impl<'a> Builder<'a> {
             case,
             problems: Vec::new(),
             warnings: Vec::new(),
+            doubts: Vec::new(),
             springs: Vec::new(),
             signals: Signals::new(),
             plan: Plan {
@@ -55,6 +58,12 @@ impl<'a> Builder<'a> {
 }
 
 impl Builder<'_> {
+    /// Warns of what concerns the result: it is a line of the verdict too.
+    pub(super) fn doubt(&mut self, warning: String) {
+        self.doubts.push(warning.clone());
+        self.warnings.push(warning);
+    }
+
     /// The group called `name`, or a problem at `path`.
     pub(super) fn group<'m>(
         &mut self,

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::law::{Reading, Restitution, Side, Velocity};
-use carom_contact::{Initial, Integration, Law, Sliding};
+use carom_contact::{Initial, Integration, Law, Shape, Sliding, Target};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
@@ -136,7 +136,7 @@ impl Builder<'_> {
             let value = rate * system.dt;
             // h / c, the step of Courant number 1, is at the bound for the default stiffness
             if value > 2.0 * (1.0 + 1e-9) && !system.scheme.get().is_explicit() {
-                self.warnings.push(format!(
+                self.doubt(format!(
                     "contact `{name}`: the damped law is too stiff for the step, 2 sqrt(k h/E) CFL = {value:.3} instead of at most 2; take a step of at most {:.4e} s or a stiffness {:.3} times as large",
                     system.dt * 2.0 / value,
                     (2.0 / value).powi(2)
@@ -160,6 +160,10 @@ impl Builder<'_> {
                 true => (thick, "distance of the middles that touch"),
                 false => (smallest, "smallest element"),
             };
+            let (element, what) = match round(&system.contacts[k].target) {
+                Some(diameter) if diameter < element => (diameter, "diameter of the obstacle"),
+                _ => (element, what),
+            };
             // both sides at the speed of the fastest node: most cases need no pairing to tell
             if !system.contacts[k].moves() && 2.0 * fastest * dt <= element {
                 continue;
@@ -167,7 +171,7 @@ impl Builder<'_> {
             let start = &system.initial_displacement;
             let way = approach(system, &accelerations, (k, start)).speed * dt;
             if way > element {
-                self.warnings.push(format!(
+                self.doubt(format!(
                     "contact `{}`: in a step its sides approach by {way:.4e} m, more than the {what} of `{}` ({element:.4e} m), and may pass through each other; take a step of at most {:.4e} s",
                     system.contacts[k].name,
                     system.bodies[secondary].name(),
@@ -184,7 +188,7 @@ impl Builder<'_> {
             && per_area
             && secondary > primary * (1.0 + 1e-9)
         {
-            self.warnings.push(format!(
+            self.doubt(format!(
                 "contact `{name}`: the {} law is per area, and its area is that of the secondary side, which is {:.4} times that of the primary one; make the side of the smaller section the secondary one, or give the law {:.4} times the value",
                 law.get().name(),
                 secondary / primary,
@@ -197,7 +201,7 @@ impl Builder<'_> {
     /// force and the middle 4/6, where they stand for 1/4 and 1/2 of its length; corners in space get nothing, or tension.
     fn warn_of_nodes(&mut self, name: &str, given: Option<schema::Integration>, quadratic: bool) {
         if quadratic && given == Some(schema::Integration::Named(IntegrationName::Node)) {
-            self.warnings.push(format!(
+            self.doubt(format!(
                 "contact `{name}`: integration = \"node\" on quadratic faces: pressures oscillate by a third and more between corner and midside nodes; remove the key, or use integration = \"mortar\""
             ));
         }
@@ -311,7 +315,7 @@ impl Builder<'_> {
                 ..
             }) = contact.law
             {
-                self.warnings.push(format!(
+                self.doubt(format!(
                     "contact `{name}`: with sign = \"as-printed\" bodies pass through each other"
                 ));
             }
@@ -334,6 +338,18 @@ impl Builder<'_> {
                 self.warnings.extend(told);
             }
         }
+    }
+}
+
+/// Diameter of an obstacle that a body may pass on its far side, m.
+fn round(target: &Target) -> Option<f64> {
+    match target {
+        Target::Rigid(obstacle) => match &obstacle.shape {
+            Shape::Sphere(sphere) => Some(2.0 * sphere.radius),
+            Shape::Cylinder(cylinder) => Some(2.0 * cylinder.radius),
+            Shape::Plane(_) | Shape::Profile(_) | Shape::Surface(_) => None,
+        },
+        Target::Surface(_) => None,
     }
 }
 

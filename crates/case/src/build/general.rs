@@ -114,6 +114,12 @@ impl Builder<'_> {
                 contacts.extend(self.between(mesh, (bodies, of), (given, one, other), &apart));
             }
         }
+        if contacts.is_empty() {
+            self.doubt(
+                "general-contact: it makes no contact: no two of the bodies have surfaces that may touch"
+                    .to_owned(),
+            );
+        }
         if contacts.len() > MANY {
             self.warnings.push(format!(
                 "general-contact: {} contacts, each with a search of its own; by = \"materials\" makes one of all bodies of two materials",
@@ -242,7 +248,7 @@ impl Builder<'_> {
                     match whole.and_then(|whole| outside(whole, joints)) {
                         Ok(surface) => Part::new(mesh, (body, material), numbers, surface),
                         Err(cause) => {
-                            self.warnings.push(format!(
+                            self.doubt(format!(
                                 "general-contact: the bodies of `{material}` take no part: {cause}"
                             ));
                             continue;
@@ -295,7 +301,7 @@ impl Builder<'_> {
                 (Some(material), Ok(surface)) => (material, surface),
                 (_, cause) => {
                     let cause = cause.err().unwrap_or("no material");
-                    self.warnings.push(format!(
+                    self.doubt(format!(
                         "general-contact: body `{name}` takes no part: {cause}; name its contacts"
                     ));
                     continue;

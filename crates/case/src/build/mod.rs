@@ -87,6 +87,8 @@ pub struct Built {
     pub reference: Option<ExactReference>,
     /// What is strange but not wrong.
     pub warnings: Vec<String>,
+    /// Those of them that concern the result.
+    pub doubts: Vec<String>,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub reductions: Vec<(String, String)>,
 }
@@ -105,6 +107,7 @@ impl Built {
             probes: Vec::new(),
             reference: None,
             warnings: Vec::new(),
+            doubts: Vec::new(),
             reductions: Vec::new(),
         }
     }
@@ -337,6 +340,7 @@ impl Builder<'_> {
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),
+            doubts: std::mem::take(&mut self.doubts),
             reductions: std::mem::take(&mut self.reductions),
         })
     }

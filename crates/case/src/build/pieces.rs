@@ -28,7 +28,7 @@ impl Builder<'_> {
                 true => "they are the same place: merge the nodes of the mesh",
                 false => "merge the nodes of the mesh, or make each piece a body of its own",
             };
-            self.warnings.push(format!(
+            self.doubt(format!(
                 "body `{}` is in {} pieces that share no node and separate without resistance; the closest nodes of two of them, {one} at ({:.6}, {:.6}, {:.6}) m and {other}, are {distance:.4e} m apart; {merge}",
                 body.spec.name,
                 pieces.len(),
@@ -73,7 +73,7 @@ impl Builder<'_> {
                     continue;
                 };
                 let x = mesh.nodes[*first as usize];
-                self.warnings.push(format!(
+                self.doubt(format!(
                     "{} nodes of body `{}`, the first at ({:.6}, {:.6}, {:.6}) m, lie in the solid `{}`, and nothing joins the two: [arlequin.<name>] glues them over a volume, [transition.<name>] an end to a face",
                     within.len(),
                     names[0],

@@ -223,7 +223,7 @@ impl Builder<'_> {
     fn warn_of_a_jump(&mut self, path: &str, motion: Option<&Amplitude>) {
         let start = motion.map_or(0.0, |motion| motion.at(0.0));
         if start != 0.0 && self.case.time.stage.is_none() {
-            self.warnings.push(format!(
+            self.doubt(format!(
                 "{path}: the displacement is {start:.4e} m at time 0: the nodes jump there in the first step, which is a shock to the body; begin with displacement = 0 at time = 0"
             ));
         }

@@ -259,7 +259,11 @@ impl Driver {
             reaction,
             springs,
             mean,
+            given,
+            ..
         } = &mut works;
+        given.clear();
+        given.resize(system.parts.len(), 0.0);
         let now = [
             &vectors.load[..],
             contact,
@@ -279,6 +283,14 @@ impl Driver {
             let before = before.get(k).map_or(&[][..], |f| &f[..]);
             let force = mean_force([before, now], weights, zones, mean);
             of_way[k] = way(force);
+            if matches!(k, 0 | 2) && !force.is_empty() {
+                for (given, part) in given.iter_mut().zip(&system.parts) {
+                    let unknowns = part.clone();
+                    *given += unknowns
+                        .map(|i| force[i] * (new.u[i] - old.u[i]))
+                        .sum::<f64>();
+                }
+            }
             if !matches!(k, 3 | 4) {
                 resultants[k] = Resultant::at(&system, places, force);
             }
@@ -371,6 +383,7 @@ impl Driver {
             // what it gains by a new size of the step alone
             self.next.ledger.resize_to(own_before);
         }
+        self.next.ledger.begin_step(maps.is_static());
         self.next.ledger.kick(&self.jump.impulse);
         self.next.ledger.go_beyond(&Beyond {
             work_supports: support + self.jump.work,

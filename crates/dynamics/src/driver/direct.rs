@@ -15,6 +15,7 @@ use super::forces::{Bodies, DAMPING, add_up};
 use super::leapfrog::{Direct, is_leapfrog};
 use super::loads::damping_rate;
 use super::reported;
+use crate::assembly_energy::PartMotion;
 use crate::error::Error;
 use crate::ledger::{Beyond, Energies, Squares, Tolerated};
 use crate::resultant::Resultant;
@@ -131,6 +132,23 @@ impl Driver {
         let records = &self.next.records.contacts;
         let momenta = |part: usize| direct.parts[part].momentum.linear;
         self.next.exchange.close(&self.system, momenta, records);
+        self.work_of_obstacles();
+        let inertia = self.inertia_of_identity();
+        let part = |part: usize| {
+            let sums = &direct.parts[part];
+            PartMotion {
+                kinetic: 0.5 * sums.velocity,
+                momentum: sums.momentum.linear,
+                taken: sums.works[1],
+                damped: sums.works[4],
+                given: sums.works[2],
+                of_scheme: inertia * sums.acceleration[1],
+            }
+        };
+        let assemblies = &mut self.next.assemblies;
+        assemblies.follow(&self.state.assemblies);
+        let contacts = (&self.next.records.contacts[..], &self.works.obstacles[..]);
+        assemblies.add(&self.system, part, contacts);
     }
 
     /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.

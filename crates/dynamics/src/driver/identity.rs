@@ -148,6 +148,12 @@ impl Driver {
         }
         let work_contact = weights.of([old, new], travel);
         let work_loads = dot(travel, &system.load);
+        let given = &mut self.works.given;
+        given.clear();
+        given.extend(system.parts.iter().map(|part| {
+            let unknowns = part.clone();
+            unknowns.map(|i| travel[i] * system.load[i]).sum::<f64>()
+        }));
         let work_links = match new.link_force.is_empty() {
             true => 0.0,
             false => {
@@ -234,6 +240,14 @@ impl Driver {
             |i| half[i],
         );
         [supports, Resultant::of(&system, half)]
+    }
+
+    /// The factor of |a|²_M in the energy that one scheme balances; zero of several.
+    pub(super) fn inertia_of_identity(&self) -> f64 {
+        match self.maps.only() {
+            Some(_) => self.identity_of_ledger().inertia,
+            None => 0.0,
+        }
     }
 
     /// The identity by which the ledger counts: that of the scheme where all forces are linear, otherwise as far as it is inertia

@@ -60,15 +60,32 @@ impl Driver {
         pushed: &dyn Fn(usize) -> Pushed,
     ) -> f64 {
         let of = |contact: usize| {
-            let way = self.way_of_obstacle(contact)?;
             let weights = weights[self.system.zone_of(contact)];
-            let old = self.state.records.contacts[contact].pushed;
-            let pushed = [old, pushed(contact)];
-            let work = |pushed: &Pushed| dot(&pushed.force, &way) + self.dt * pushed.turn;
-            Some(weights[0] * work(&pushed[0]) + weights[1] * work(&pushed[1]))
+            self.work_of_obstacle(contact, weights, pushed(contact))
         };
         let works = (0..self.system.contacts.len()).filter_map(of);
         self.contact_factor() * works.sum::<f64>()
+    }
+
+    /// That of the obstacle of one contact, without the factor of contact forces; `None` where it does not move.
+    fn work_of_obstacle(&self, contact: usize, weights: [f64; 2], pushed: Pushed) -> Option<f64> {
+        let way = self.way_of_obstacle(contact)?;
+        let pushed = [self.state.records.contacts[contact].pushed, pushed];
+        let work = |pushed: &Pushed| dot(&pushed.force, &way) + self.dt * pushed.turn;
+        Some(weights[0] * work(&pushed[0]) + weights[1] * work(&pushed[1]))
+    }
+
+    /// Writes the work of each obstacle in the step, J, of what was reported of the contacts.
+    pub(super) fn work_of_obstacles(&mut self) {
+        let mut works = std::mem::take(&mut self.works.obstacles);
+        works.clear();
+        for (contact, of) in self.of_contacts.iter().enumerate() {
+            let impulse = &self.maps.all()[self.system.zone_of(contact)].contact_impulse;
+            let weights = [impulse.old, impulse.new];
+            let work = self.work_of_obstacle(contact, weights, of.pushed);
+            works.push(work.map_or(0.0, |work| self.contact_factor() * work));
+        }
+        self.works.obstacles = works;
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_contact::Rows;
 
 use super::Driver;
+use crate::assembly_energy::PartMotion;
 use crate::exchange::sum;
 use crate::moment::moment;
 use crate::of_contact::OfContact;
@@ -13,6 +14,7 @@ use crate::report::ContactReport;
 use crate::small::Largest;
 use crate::state::{InterfaceState, State};
 use crate::step_map::Impulse;
+use crate::system::{Motion, System};
 
 impl Driver {
     /// Records of the contacts, and what they give to each part.
@@ -26,7 +28,42 @@ impl Driver {
             let records = &self.next.records.contacts;
             let momenta = |part: usize| sum(&system, &system.parts[part], work);
             self.next.exchange.close(&system, momenta, records);
+            self.balance_assemblies();
         }
+    }
+
+    /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
+    fn balance_assemblies(&mut self) {
+        self.work_of_obstacles();
+        let inertia = self.inertia_of_identity();
+        let system = &*self.system;
+        let (old, new) = (&self.state.motion, &self.next.motion);
+        let (vectors, works) = (&mut self.vectors, &self.works);
+        if inertia != 0.0 {
+            system.mass.multiply(&new.a, &mut vectors.half);
+        }
+        let has_damping = system.has_damping();
+        let part = |number: usize| {
+            let sum = |of: &dyn Fn(usize) -> f64| system.parts[number].clone().map(of).sum::<f64>();
+            let mut motion = motion_of(
+                system,
+                number,
+                ([&old.u, &old.internal_force], new),
+                &vectors.work,
+            );
+            if has_damping {
+                motion.damped = sum(&|i| vectors.damping[i] * (new.u[i] - old.u[i]));
+            }
+            if inertia != 0.0 {
+                motion.of_scheme = inertia * sum(&|i| vectors.half[i] * new.a[i]);
+            }
+            motion.given = works.given.get(number).copied().unwrap_or(0.0);
+            motion
+        };
+        let assemblies = &mut self.next.assemblies;
+        assemblies.follow(&self.state.assemblies);
+        let contacts = (&self.next.records.contacts[..], &works.obstacles[..]);
+        assemblies.add(system, part, contacts);
     }
 
     /// What the points of the contacts did in the step: those that this process has.
@@ -245,6 +282,25 @@ impl Driver {
             }
         }
     }
+}
+
+/// A connected part at the end of a step from displacements and internal forces to a motion. `momentum`: M v of it, by unknown.
+pub(super) fn motion_of(
+    system: &System,
+    part: usize,
+    ([u, force], new): ([&Vec<f64>; 2], &Motion),
+    momentum: &[f64],
+) -> PartMotion {
+    let range = &system.parts[part];
+    let mut motion = PartMotion {
+        momentum: sum(system, range, momentum),
+        ..PartMotion::default()
+    };
+    for i in range.clone() {
+        motion.kinetic += 0.5 * momentum[i] * new.v[i];
+        motion.taken += 0.5 * (force[i] + new.internal_force[i]) * (new.u[i] - u[i]);
+    }
+    motion
 }
 
 /// Sum of a normal force or impulse over points of a contact, and its resultant on the secondary body.

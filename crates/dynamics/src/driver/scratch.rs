@@ -118,6 +118,10 @@ pub(super) struct Works {
     pub(super) springs: Vec<f64>,
     /// Mean of one force over the step.
     pub(super) mean: Vec<f64>,
+    /// Work of loads and supports in the step on each connected part, J.
+    pub(super) given: Vec<f64>,
+    /// Work in the step of the obstacle of each contact, J.
+    pub(super) obstacles: Vec<f64>,
 }
 
 impl Works {

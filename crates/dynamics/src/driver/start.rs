@@ -18,11 +18,13 @@ use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
+use super::record::motion_of;
 use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
 use super::{Driver, Which};
+use crate::assembly_energy::{AssemblyEnergies, PartMotion};
 use crate::control::Control;
 use crate::costs::{Costs, Phases};
 use crate::coulomb::Coulomb;
@@ -284,7 +286,32 @@ impl Driver {
             true => self.start_works(stored.strain, stored.hardening),
             false => self.start_identity(stored.strain),
         }
+        self.start_assemblies();
         Ok(())
+    }
+
+    /// Energies of the assemblies begin with the dynamics.
+    fn start_assemblies(&mut self) {
+        self.state.assemblies = AssemblyEnergies::default();
+        if self.is_static() {
+            return;
+        }
+        let inertia = self.inertia_of_identity();
+        let (system, work) = (&*self.system, &mut self.vectors.work);
+        let motion = &self.state.motion;
+        let mut inertial = vec![0.0; system.unknowns()];
+        system.mass.multiply(&motion.a, &mut inertial);
+        system.mass.multiply(&motion.v, work);
+        let none = vec![0.0; system.unknowns()];
+        let part = |number: usize| {
+            let unknowns = system.parts[number].clone();
+            let square = unknowns.map(|i| motion.a[i] * inertial[i]).sum::<f64>();
+            PartMotion {
+                of_scheme: inertia * square,
+                ..motion_of(system, number, ([&none; 2], motion), work)
+            }
+        };
+        self.state.assemblies = AssemblyEnergies::start(system, part);
     }
 
     /// Keeps what direct steps need of the start: loads that vary, and forces beside the internal ones.

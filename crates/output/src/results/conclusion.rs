@@ -137,6 +137,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         energy: &energy,
         momentum: &momentum,
         exact: exact.as_ref(),
+        doubts: &settings.doubts,
         iterated: ending.costs.work.products > 0,
         study: settings.study.as_deref(),
     };
@@ -282,9 +283,9 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         stored,
         residual: end.energy_residual,
         largest_residual: largest,
-        largest: ledger.largest_energy,
+        largest: last.largest_energy(),
         largest_hourglass: (ledger.largest_hourglass > 0.0).then_some(ledger.largest_hourglass),
-        relative_residual: relative(largest, ledger.largest_energy),
+        relative_residual: relative(largest, last.largest_energy()),
         identity,
     }
 }

@@ -30,6 +30,7 @@ mod keeping;
 mod largest;
 mod lines;
 mod loads;
+mod meetings;
 pub(crate) mod outlines;
 pub(crate) mod page;
 mod pieces;
@@ -274,11 +275,13 @@ impl Results {
             time: state.time,
             control: state.control,
             ledger: state.ledger.clone(),
+            assemblies: state.assemblies.clone(),
             records: state.records.clone(),
             exchange: (state.exchange.largest_momentum > 0.0).then_some([
                 state.exchange.largest_residual,
                 state.exchange.largest_momentum,
             ]),
+            unjoined: meetings::unjoined(&self.system, &state.motion),
             velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
         };

@@ -50,6 +50,8 @@ pub struct Settings {
     pub zoning: Option<Zoning>,
     /// Warnings of the check.
     pub warnings: Vec<String>,
+    /// Those of them that concern the result: each is a line of the verdict.
+    pub doubts: Vec<String>,
     /// When checkpoints are written.
     pub checkpoints: Checkpoints,
 }

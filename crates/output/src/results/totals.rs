@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use carom_dynamics::{Control, Ledger, Records};
+use carom_dynamics::{AssemblyEnergies, AssemblyEnergy, Control, Ledger, Records};
 use serde::{Deserialize, Serialize};
 
 /// What is counted over the steps.
@@ -25,11 +25,39 @@ pub(crate) struct Last {
     pub(crate) time: f64,
     pub(crate) control: Control,
     pub(crate) ledger: Ledger,
+    pub(crate) assemblies: AssemblyEnergies,
     pub(crate) records: Records,
     /// Largest residual of the momentum that contacts give to a body, and largest momentum of one, N s; `None` where nothing moves.
     pub(crate) exchange: Option<[f64; 2]>,
+    /// Pairs of bodies that met with no contact between them.
+    pub(crate) unjoined: Vec<[usize; 2]>,
     /// Mean velocity of the bodies, m/s.
     pub(crate) velocities: Vec<[f64; 3]>,
     /// Whether each contact has a force.
     pub(crate) closed: Vec<bool>,
+}
+
+/// Part of the largest energy in the frame of the model below which rounding hides an energy: the balance is kept to 1e-9 of
+/// what is compared with it, and its terms, of the size of the energy in the frame of the model, to some 1e-13 over a run.
+const ROUNDING: f64 = 1e-4;
+
+impl Last {
+    /// Largest energy of the run, J, in the frames of the assemblies; of static stages, and of zones that step by themselves, that of
+    /// the ledger.
+    pub(crate) fn largest_energy(&self) -> f64 {
+        match self.assemblies.largest {
+            own if own > 0.0 => own.max(ROUNDING * self.ledger.largest_energy),
+            _ => self.ledger.largest_energy,
+        }
+    }
+
+    /// Energy at the start and the largest work of loads, supports and obstacles, J, in the same frames.
+    pub(crate) fn put_in(&self) -> f64 {
+        let (ledger, own) = (&self.ledger, &self.assemblies);
+        match (ledger.is_static, own.largest > 0.0) {
+            (true, _) => ledger.largest_energy,
+            (false, true) => own.all.iter().map(AssemblyEnergy::put_in).sum::<f64>(),
+            (false, false) => ledger.initial.energy() + ledger.largest_given,
+        }
+    }
 }

@@ -156,6 +156,7 @@ pub fn settings(folder: &Path) -> Settings {
         zoning: None,
         piece: None,
         warnings: Vec::new(),
+        doubts: Vec::new(),
         checkpoints: Checkpoints {
             every: None,
             wall: None,

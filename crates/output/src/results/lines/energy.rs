@@ -1,11 +1,10 @@
 //! The balance of energy.
 
 use carom_contact::Law;
-use carom_dynamics::Ledger;
 
 use crate::form::Form;
 use crate::results::lines::resolution::has_waves;
-use crate::results::lines::{Evidence, Finding};
+use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
 
 /// Bound of the residual relative to the largest energy. The balance is an identity of the linear step; what is left is
@@ -41,7 +40,7 @@ pub(super) fn residual_remedy(evidence: &Evidence, tolerated: f64) -> &'static s
     }
 }
 
-/// Bounds of the energy that appears without work from outside, relative to the largest energy. No law and no scheme has a
+/// Bounds of the energy that appears without work from outside, relative to the energy put in. No law and no scheme has a
 /// right to any; what the residual cannot show is a contact that makes energy with its ledger closed, as the trapezoid with the
 /// displacement law does. A thousandth is beyond all rounding and all tolerances.
 const GAIN: Bounds = Bounds::Both(1e-3, 0.01);
@@ -66,11 +65,15 @@ pub(super) fn made(evidence: &Evidence) -> Finding {
         let why = "what the scheme made: the energy that it balances is that of displacements between two steps, known for linear forces only";
         return Finding::Unchecked(why.to_owned());
     }
+    let (value, around) = evidence.worst_assembly(
+        relative(ledger.largest_made, evidence.last.put_in()),
+        |own| relative(own.largest_made, own.put_in()),
+    );
     Finding::Line(Line::new(
         "scheme-made",
         (
-            "largest energy that the scheme made, relative to the largest energy",
-            relative(ledger, ledger.largest_made),
+            &format!("largest energy that the scheme made{around}, relative to the energy put in"),
+            value,
             Form::Percent,
         ),
         GAIN,
@@ -85,8 +88,10 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
             "the balance of energy: no energy identity of the scheme {scheme} is known, so the residual contains the dissipation of the scheme"
         ));
     }
-    let ledger = &evidence.last.ledger;
-    let tolerated = relative(ledger, ledger.tolerated.energy);
+    let tolerated = relative(
+        evidence.last.ledger.tolerated.energy,
+        evidence.last.largest_energy(),
+    );
     Finding::Line(Line::new(
         "energy-residual",
         (
@@ -101,12 +106,17 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
 
 /// Energy from nowhere: what the scheme balances, beyond the work of loads, supports and obstacles.
 pub(super) fn gain(evidence: &Evidence) -> Finding {
-    let ledger = &evidence.last.ledger;
+    let (value, around) = evidence.worst_assembly(
+        relative(evidence.last.ledger.largest_gain, evidence.last.put_in()),
+        |own| relative(own.largest_gain, own.put_in()),
+    );
     Finding::Line(Line::new(
         "energy-gain",
         (
-            "largest gain of energy without the work of loads, supports and obstacles, relative to the largest energy",
-            relative(ledger, ledger.largest_gain),
+            &format!(
+                "largest gain of energy{around} without the work of loads, supports and obstacles, relative to the energy put in"
+            ),
+            value,
             Form::Percent,
         ),
         GAIN,
@@ -114,21 +124,31 @@ pub(super) fn gain(evidence: &Evidence) -> Finding {
     ))
 }
 
-/// Energy that contact makes, whatever friction, damping and the scheme lose.
+/// Energy that a contact makes, whatever other contacts, friction, damping and the scheme lose.
 pub(super) fn of_contact(evidence: &Evidence) -> Finding {
     if evidence.system.contacts.is_empty() {
         return Finding::Absent;
     }
-    let ledger = &evidence.last.ledger;
-    if ledger.is_static {
+    if evidence.last.ledger.is_static {
         let why = "the work of the contacts: in a static stage it is a sum over the steps, accurate for small steps only";
         return Finding::Unchecked(why.to_owned());
     }
+    let contacts = evidence.system.contacts.iter().enumerate();
+    let records = contacts.zip(&evidence.last.records.contacts);
+    let made = records.map(|((k, contact), record)| {
+        let supplied = evidence.around(k).supplied;
+        (&*contact.name, relative(record.largest_work, supplied))
+    });
+    let Some((name, value)) = worst(made) else {
+        return Finding::Absent;
+    };
     Finding::Line(Line::new(
         "contact-work",
         (
-            "largest positive work of the contacts without that of moving obstacles, relative to the largest energy",
-            relative(ledger, ledger.largest_contact_work),
+            &format!(
+                "largest positive work of contact `{name}` without that of a moving obstacle{OF_BODIES}"
+            ),
+            value,
             Form::Percent,
         ),
         GAIN,
@@ -136,27 +156,52 @@ pub(super) fn of_contact(evidence: &Evidence) -> Finding {
     ))
 }
 
-/// Energy that closing takes, where neither a law nor a body without waves gives a reason for it: a node that closes loses the energy of
+/// What the works of a contact are relative to.
+const OF_BODIES: &str =
+    ", relative to the energy put into the bodies that it may touch, or their largest";
+
+/// Energy that closing takes, where neither the law nor a body without waves gives a reason for it: a node that closes loses the energy of
 /// its own motion, a share of the mass of the nodes at the surface, which goes with the size of the elements; in a step in which a wave passes
 /// several of them, that of all these.
 pub(super) fn lost(evidence: &Evidence) -> Finding {
-    let (system, ledger) = (evidence.system, &evidence.last.ledger);
-    let exact = |law: &Law| matches!(law, Law::Velocity(_) | Law::Displacement(_));
-    let mut contacts = system.contacts.iter().enumerate();
-    let loses = contacts.all(|(k, contact)| exact(&contact.law) && has_waves(system, k));
-    if system.contacts.is_empty() || ledger.is_static || !loses {
+    if evidence.last.ledger.is_static {
         return Finding::Absent;
     }
+    let contacts = evidence.system.contacts.iter().enumerate();
+    let records = contacts.zip(&evidence.last.records.contacts);
+    let lossless = records
+        .filter(|((k, contact), _)| is_lossless(&contact.law) && has_waves(evidence.system, *k));
+    let lost = lossless.map(|((k, contact), record)| {
+        let around = evidence.around(k);
+        let lost = (-record.work()).max(0.0);
+        (
+            &*contact.name,
+            relative(lost, around.supplied.max(around.largest)),
+        )
+    });
+    let Some((name, value)) = worst(lost) else {
+        return Finding::Absent;
+    };
     Finding::Line(Line::new(
         "contact-loss",
         (
-            &format!("energy lost where nodes close{OF_LOSABLE}"),
-            of_losable(evidence, (-ledger.balance.work_contact).max(0.0)),
+            &format!("energy lost where nodes of contact `{name}` close{OF_BODIES}"),
+            value,
             Form::Percent,
         ),
         LOSS,
         "refine the mesh at the contact, and take steps in which a wave passes no more than an element: the loss goes with the size of the elements (`carom study --vary mesh.refine=0,1`), and with longer steps",
     ))
+}
+
+/// Whether a law loses no energy by itself: with restitution 0 a node that closes stays, as with the exact laws, and the body
+/// behind it keeps its energy.
+fn is_lossless(law: &Law) -> bool {
+    match law {
+        Law::Velocity(_) | Law::Displacement(_) => true,
+        Law::Restitution(law) => law.coefficient == 0.0,
+        _ => false,
+    }
 }
 
 /// Energy that the scheme dissipates. It takes that of waves as short as a step, which are none of the bodies; what it takes beyond is.
@@ -166,11 +211,19 @@ pub(super) fn lost_to_scheme(evidence: &Evidence) -> Finding {
     if ledger.is_static || without_identity(evidence).is_some() {
         return Finding::Absent;
     }
+    // of bodies that are driven over many periods more is put in than there ever is at once
+    let whole = relative(
+        ledger.balance.dissipation_scheme.max(0.0),
+        evidence.last.put_in().max(evidence.last.largest_energy()),
+    );
+    let (value, around) = evidence.worst_assembly(whole, |own| {
+        relative(own.dissipated.max(0.0), own.put_in().max(own.largest))
+    });
     Finding::Line(Line::new(
         "scheme-loss",
         (
-            &format!("energy that the scheme dissipated{OF_LOSABLE}"),
-            of_losable(evidence, ledger.balance.dissipation_scheme.max(0.0)),
+            &format!("energy that the scheme dissipated{around}{OF_LOSABLE}"),
+            value,
             Form::Percent,
         ),
         LOSS,
@@ -182,15 +235,6 @@ pub(super) fn lost_to_scheme(evidence: &Evidence) -> Finding {
 const OF_LOSABLE: &str =
     ", relative to the largest energy or the energy put in, whichever is larger";
 
-/// A part of the energy that could be lost: of bodies that are driven over many periods more is put in than there ever is at once.
-fn of_losable(evidence: &Evidence, part: f64) -> f64 {
-    let energy = evidence.energy;
-    match part == 0.0 {
-        true => 0.0,
-        false => part / energy.supplied().max(evidence.last.ledger.largest_energy),
-    }
-}
-
 /// Kinetic and strain energy that the scheme takes for none.
 pub(super) fn of_scheme(evidence: &Evidence) -> Finding {
     let ledger = &evidence.last.ledger;
@@ -201,7 +245,7 @@ pub(super) fn of_scheme(evidence: &Evidence) -> Finding {
         "scheme-energy",
         (
             "largest excess of kinetic and strain energy over the energy that the scheme balances, relative to the largest energy",
-            relative(ledger, ledger.largest_excess),
+            relative(ledger.largest_excess, evidence.last.largest_energy()),
             Form::Percent,
         ),
         EXCESS,
@@ -209,11 +253,11 @@ pub(super) fn of_scheme(evidence: &Evidence) -> Finding {
     ))
 }
 
-/// A part of the largest energy; nothing is no part of anything.
-fn relative(ledger: &Ledger, part: f64) -> f64 {
+/// A part of an energy; nothing is no part of anything.
+fn relative(part: f64, whole: f64) -> f64 {
     match part == 0.0 {
         true => 0.0,
-        false => part / ledger.largest_energy,
+        false => part / whole,
     }
 }
 

@@ -15,6 +15,8 @@ pub(crate) struct Evidence<'a> {
     pub(crate) energy: &'a Energy,
     pub(crate) momentum: &'a Momentum,
     pub(crate) exact: Option<&'a Exact>,
+    /// Warnings of the check that concern the result.
+    pub(crate) doubts: &'a [String],
     /// Whether linear equations were solved by iterations.
     pub(crate) iterated: bool,
     /// The command that varies mesh and step.

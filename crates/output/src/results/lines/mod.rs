@@ -3,14 +3,18 @@
 
 mod chatter;
 mod convergence;
+mod doubts;
 mod energy;
 mod exact;
 mod explicit;
 mod finding;
 mod finite;
+mod happened;
 mod momentum;
 mod penetration;
 mod resolution;
+mod sampling;
+mod scales;
 mod small;
 
 use crate::verdict::Verdict;
@@ -31,6 +35,9 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     energy::lost_to_scheme,
     energy::of_scheme,
     finite::states,
+    sampling::of_functions,
+    happened::closed,
+    happened::met,
     explicit::hourglass,
     explicit::added_mass,
     explicit::deleted_cells,
@@ -63,5 +70,6 @@ pub(crate) fn judge(evidence: &Evidence, unfinished: Option<String>) -> Verdict 
             Finding::Absent => {}
         }
     }
+    lines.extend(doubts::lines(evidence));
     Verdict::new(unfinished, lines, unchecked)
 }

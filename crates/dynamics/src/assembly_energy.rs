@@ -1,0 +1,187 @@
+//! Energies of bodies that may act on each other, each assembly in its own frame ([`carom_system::Assembly`]): the sizes with which
+//! losses and gains are compared, and the balance of each by itself. They do not depend on the frame of the model, nor on bodies
+//! that have nothing to do with these.
+//!
+//! The energy of an assembly is E = K + A, with K the kinetic energy in its frame and A the work that its materials took. Outside forces
+//! give W, contacts C (negative where closing takes energy, friction counted), damping takes D, and the scheme what is left:
+//! `E = E₀ + W + C - D - scheme`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::records::ContactRecord;
+use crate::sum::Sum;
+use crate::system::System;
+
+/// Part of the kinetic energy in the frame of the model of which another frame leaves rounding: some 1e-15 in a step, times the
+/// thousand of which a gain would be told.
+const ROUNDING: f64 = 1e-11;
+
+/// Energies of all assemblies.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AssemblyEnergies {
+    /// By assembly; empty before the dynamics, and where zones step by themselves.
+    pub all: Vec<AssemblyEnergy>,
+    /// Largest so far, of all together, J.
+    pub largest: f64,
+}
+
+/// Energy of one assembly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct AssemblyEnergy {
+    /// At the start, J.
+    pub start: f64,
+    /// Largest so far, J.
+    pub largest: f64,
+    /// Now, J.
+    pub now: f64,
+    /// Energy of springs so far that pull at elongation zero, J: what they release beyond that, positive.
+    pub released: f64,
+    /// Largest work from outside so far, of loads, supports and obstacles, J.
+    pub largest_given: f64,
+    /// Largest energy so far beyond that at the start and the work from outside, J.
+    pub largest_gain: f64,
+    /// Largest energy that the scheme has made so far, J.
+    pub largest_made: f64,
+    /// What the scheme has taken so far, J.
+    pub dissipated: f64,
+    /// Largest kinetic energy so far in the frame of the model, J.
+    pub in_frame_of_model: f64,
+    taken: Sum,
+    damped: Sum,
+    given: Sum,
+    /// Momentum at the start, N s.
+    momentum: [f64; 3],
+}
+
+/// A connected part at the end of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PartMotion {
+    /// ½ v · M v, J.
+    pub(crate) kinetic: f64,
+    /// The term in |a|²_M of the energy that the scheme balances, J.
+    pub(crate) of_scheme: f64,
+    /// Momentum, N s.
+    pub(crate) momentum: [f64; 3],
+    /// Work that the internal forces took in the step, J.
+    pub(crate) taken: f64,
+    /// Work that damping took in the step, J.
+    pub(crate) damped: f64,
+    /// Work of loads and supports in the step, J.
+    pub(crate) given: f64,
+}
+
+impl AssemblyEnergy {
+    /// Energy put in so far: that at the start, the largest work from outside, and what springs released, J; not less than what rounding
+    /// leaves of the kinetic energy in the frame of the model.
+    pub fn put_in(&self) -> f64 {
+        let put_in = self.start + self.largest_given + self.released;
+        put_in.max(ROUNDING * self.in_frame_of_model)
+    }
+
+    /// Adds the motion of its parts.
+    fn take(&mut self, motion: &PartMotion) {
+        self.taken.add(motion.taken);
+        self.damped.add(motion.damped);
+        self.given.add(motion.given);
+    }
+
+    /// The energies at the end of a step. `kinetic` and `given`: in the frame of the assembly; `contacts`: work of its contacts so far, less what
+    /// friction took; J.
+    fn close(&mut self, kinetic: f64, [of_scheme, given, contacts]: [f64; 3]) {
+        let taken = self.taken.get();
+        self.now = kinetic + taken;
+        self.released = self.released.max(-taken);
+        self.largest = self.largest.max(kinetic + taken.max(0.0));
+        self.largest_given = self.largest_given.max(given);
+        let gained = self.now + of_scheme - self.start - given;
+        self.largest_gain = self.largest_gain.max(gained);
+        self.dissipated = contacts - self.damped.get() - gained;
+        self.largest_made = self.largest_made.max(-self.dissipated);
+    }
+}
+
+impl AssemblyEnergies {
+    /// At the start. `part`: each connected part, with ½ u · f as its work.
+    pub(crate) fn start(system: &System, part: impl Fn(usize) -> PartMotion) -> AssemblyEnergies {
+        let mut energies = AssemblyEnergies {
+            all: vec![AssemblyEnergy::default(); system.assemblies.all.len()],
+            largest: 0.0,
+        };
+        for (assembly, energy) in system.assemblies.all.iter().zip(&mut energies.all) {
+            let mut sum = PartMotion::default();
+            for motion in assembly.parts.iter().map(|&number| part(number)) {
+                energy.take(&motion);
+                sum.include(&motion);
+            }
+            let kinetic = assembly.kinetic(sum.kinetic, &sum.momentum);
+            energy.in_frame_of_model = sum.kinetic;
+            energy.momentum = sum.momentum;
+            energy.start = kinetic + energy.taken.get();
+            energy.close(kinetic, [0.0; 3]);
+            // the scheme's own term belongs to the start
+            energy.start += sum.of_scheme;
+            energies.largest += energy.largest;
+        }
+        energies
+    }
+
+    /// Makes this that of the state before the step.
+    pub(crate) fn follow(&mut self, before: &AssemblyEnergies) {
+        self.all.clone_from(&before.all);
+        self.largest = before.largest;
+    }
+
+    /// Adds the end of a step. `obstacles`: work in the step of the obstacle of each contact, J.
+    pub(crate) fn add(
+        &mut self,
+        system: &System,
+        part: impl Fn(usize) -> PartMotion,
+        (records, obstacles): (&[ContactRecord], &[f64]),
+    ) {
+        let mut sum = 0.0;
+        let assemblies = &system.assemblies;
+        for (number, energy) in self.all.iter_mut().enumerate() {
+            let assembly = &assemblies.all[number];
+            let mut all = PartMotion::default();
+            for motion in assembly.parts.iter().map(|&number| part(number)) {
+                energy.take(&motion);
+                all.include(&motion);
+            }
+            let mut contacts = 0.0;
+            for &contact in &assembly.contacts {
+                energy.given.add(obstacles[contact]);
+                contacts += records[contact].work() - records[contact].friction_loss();
+            }
+            // the impulse from outside is the change of the momentum
+            let carried =
+                (0..3).map(|i| assembly.velocity[i] * (all.momentum[i] - energy.momentum[i]));
+            let given = energy.given.get() - carried.sum::<f64>();
+            let kinetic = assembly.kinetic(all.kinetic, &all.momentum);
+            energy.in_frame_of_model = energy.in_frame_of_model.max(all.kinetic);
+            energy.close(kinetic, [all.of_scheme, given, contacts]);
+            sum += kinetic + energy.taken.get().max(0.0);
+        }
+        self.largest = self.largest.max(sum);
+    }
+
+    /// That of the assembly of a contact; none where the system was stepped by zones, which do not gather them.
+    pub fn of_contact(&self, system: &System, contact: usize) -> Option<&AssemblyEnergy> {
+        self.all.get(system.assemblies.of_contact(system, contact))
+    }
+
+    /// Whether they are of this system; none of zones that step by themselves.
+    pub(crate) fn are_of(&self, system: &System) -> bool {
+        [0, system.assemblies.all.len()].contains(&self.all.len())
+    }
+}
+
+impl PartMotion {
+    /// Adds what is told of another part.
+    fn include(&mut self, other: &PartMotion) {
+        self.kinetic += other.kinetic;
+        self.of_scheme += other.of_scheme;
+        for i in 0..3 {
+            self.momentum[i] += other.momentum[i];
+        }
+    }
+}
