@@ -21,9 +21,9 @@ pub struct ImpactRow {
     pub peak_force: f64,
     /// Steps of the closed interval in which it is: below some ten, the peak is one of the step.
     pub peak_steps: u64,
-    /// Largest mean of the contact force over a window of `window` seconds, N.
-    pub peak_mean_force: f64,
-    /// Length of that window, s.
+    /// Largest mean of the contact force over a window of `window` seconds, N; `None` without a window.
+    pub peak_mean_force: Option<f64>,
+    /// Length of that window, s; zero of a secondary body without waves, which gives no time to take a mean over.
     pub window: f64,
     /// Impulse of the impact, N s.
     pub impulse: f64,
@@ -121,7 +121,7 @@ impl ImpactTable {
             Cell::Number(impact.start),
             impact.duration.into(),
             Cell::Number(impact.peak_force),
-            Cell::Number(impact.peak_mean_force),
+            impact.peak_mean_force.into(),
             Cell::Number(impact.window),
             Cell::Number(impact.impulse),
             impact.approach_speed.into(),

@@ -41,7 +41,7 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 peak_force: record.peak_force,
                 peak_resultant: totals.resultant,
                 peak_moment: totals.moment,
-                peak_mean_force: in_time(totals.mean.peak()),
+                peak_mean_force: in_time(totals.mean.peak()).filter(|_| totals.window > 0.0),
                 window: totals.window,
                 mean_force: in_time(match closed > 0.0 {
                     true => record.impulse() / closed,

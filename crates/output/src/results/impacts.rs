@@ -101,9 +101,8 @@ impl Impacts {
         zoning: Option<&Zoning>,
     ) -> Result<Impacts, Error> {
         let totals = |contact| {
+            // of the model alone, so that runs with different steps can be compared
             let window = mean_window(system, zoning, contact);
-            let steps = (window / system.dt).round().max(1.0);
-            let window = steps * system.dt;
             ContactTotals {
                 mean: PeakOfMean::new(window),
                 window,
@@ -174,7 +173,9 @@ impl Impacts {
                 if let Some(about) = about {
                     totals.follow_moment(about.point, contact.moment, time);
                 }
-                totals.mean.push(dt, contact.force);
+                if totals.window > 0.0 {
+                    totals.mean.push(dt, contact.force);
+                }
                 totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {
                     totals.closed += dt;
@@ -202,7 +203,7 @@ impl Impacts {
 
     fn push(&mut self, system: &System, impact: &Impact) -> Result<(), Error> {
         let totals = &mut self.told.contacts[impact.contact as usize];
-        let peak_mean_force = totals.mean.take();
+        let peak_mean_force = (totals.window > 0.0).then(|| totals.mean.take());
         let (secondary, primary) = system.sides[impact.contact as usize];
         let are_two = Some(secondary) != primary && !system.is_of_many(impact.contact as usize);
         let of_two = |value: f64| are_two.then_some(value);

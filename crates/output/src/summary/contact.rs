@@ -22,9 +22,10 @@ pub struct Contact {
     /// names none, or nothing touched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_moment: Option<PeakMoment>,
-    /// Largest mean of the force over `window`, N; `None` of a static run, whose steps take no time.
+    /// Largest mean of the force over `window`, N; `None` of a static run, whose steps take no time, and without a window.
     pub peak_mean_force: Option<f64>,
-    /// Length of that window, s.
+    /// Length of that window, s: a tenth of the time in which a wave crosses the secondary body, whatever the step; zero of a body
+    /// without waves.
     pub window: f64,
     /// `impulse` over the time spent closed, N; zero if never closed, `None` of a static run.
     pub mean_force: Option<f64>,

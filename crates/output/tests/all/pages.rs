@@ -219,7 +219,7 @@ fn what_does_not_exist_is_a_dash() {
         duration: None,
         peak_force: 1.0,
         peak_steps: 1,
-        peak_mean_force: 1.0,
+        peak_mean_force: Some(1.0),
         window: 1e-6,
         impulse: 1.0,
         approach_speed: Some(1.0),

@@ -126,7 +126,7 @@ fn an_impact_that_is_not_over_has_empty_cells() {
         duration: Some(2e-4),
         peak_force: 7e4,
         peak_steps: 12,
-        peak_mean_force: 6.6e4,
+        peak_mean_force: Some(6.6e4),
         window: 5e-6,
         impulse: 6.6,
         approach_speed: Some(5.0),
