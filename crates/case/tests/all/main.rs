@@ -29,6 +29,7 @@ mod repeat;
 mod resume;
 mod simulation;
 mod stage_one;
+mod symmetries;
 mod verdict;
 mod warnings;
 mod zones;

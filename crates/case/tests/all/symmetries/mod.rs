@@ -1,0 +1,158 @@
+//! What must not change the answer: the frame of reference, the origin, the axes, the units, the order of names, which side is the
+//! secondary one of equal meshes, and what else is in the room.
+//!
+//! 200 models from seeds ([`model`]): two or three blocks that collide, fall on a plane or on each other, with all laws and some schemes, with and without
+//! friction, at small and finite strain. Each is computed as it is and changed, and impulses, largest forces and all grades are
+//! compared.
+//!
+//! The bound of a difference is stated before the runs. Places are known to 1e-16 of their size L (the distance from the origin, or
+//! the way of the frame); a contact force of a node is its gap over the step squared times its mass, or its strain times its
+//! stiffness: it is wrong by the rounding of the place over the displacement of an impact, v dt. So the relative difference is at most
+//! 1e-16 L / (v dt) times the number of operations, a hundred; and 1e-9 where places stay: solves of a condition of 1e6.
+
+mod model;
+
+use carom_output::{Grade, Summary};
+
+use self::model::{Change, Model};
+use crate::verdict::result;
+
+/// Models of a symmetry.
+const MODELS: u64 = 200;
+
+/// What is compared of a run.
+struct Answer {
+    grade: Grade,
+    /// By name of the line.
+    grades: Vec<(String, Grade)>,
+    /// Impulse and largest force of each contact.
+    forces: Vec<[f64; 2]>,
+}
+
+fn answer(text: &str) -> Answer {
+    let (summary, _) = result(text);
+    let contact = |name: &str| -> [f64; 2] {
+        let contact = &summary.contacts[name];
+        [contact.impulse.unwrap(), contact.peak_force]
+    };
+    let own = summary.contacts.keys().filter(|name| name.starts_with('c'));
+    Answer {
+        grade: summary.verdict.grade,
+        grades: grades(&summary),
+        forces: own.map(|name| contact(name)).collect(),
+    }
+}
+
+fn grades(summary: &Summary) -> Vec<(String, Grade)> {
+    let lines = summary.verdict.lines.iter();
+    lines.map(|line| (line.name.clone(), line.grade)).collect()
+}
+
+/// Compares all models with their changed ones; `rounding`: of a place, m, with the change.
+fn hold(change: impl Fn(&Model) -> (Change, f64)) {
+    let mut broken = Vec::new();
+    for seed in 0..MODELS {
+        let model = Model::new(seed);
+        let (change, place) = change(&model);
+        let (plain, changed) = (
+            answer(&model.text(&Change::default())),
+            answer(&model.text(&change)),
+        );
+        let bound = 1e-9 + 100.0 * 1e-16 * place / (model.speed() * model.step());
+        let scale = change.force_unit();
+        for (one, other) in plain.forces.iter().zip(&changed.forces) {
+            for (k, name) in ["impulse", "peak"].into_iter().enumerate() {
+                let (one, other) = (one[k], other[k] * scale);
+                if (one - other).abs() > bound * one.abs().max(other.abs()) {
+                    broken.push(format!("{seed}: {name} {one:e} {other:e}, bound {bound:e}"));
+                }
+            }
+        }
+        for (name, grade) in &plain.grades {
+            let other = changed.grades.iter().find(|(other, _)| other == name);
+            if other.is_none_or(|(_, other)| other != grade) {
+                broken.push(format!("{seed}: {name} {grade:?} {other:?}"));
+            }
+        }
+        if plain.grade != changed.grade {
+            broken.push(format!("{seed}: {:?} {:?}", plain.grade, changed.grade));
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn a_uniform_velocity_along_what_holds_nothing_changes_no_answer() {
+    for speed in [1.0, 100.0, 1e4] {
+        hold(|model| {
+            let change = Change {
+                velocity: speed,
+                ..Change::default()
+            };
+            (change, speed * model.end())
+        });
+    }
+}
+
+#[test]
+fn the_distance_of_the_origin_changes_no_answer() {
+    hold(|_| {
+        let shift = [1e6, -3e5];
+        let change = Change {
+            shift,
+            ..Change::default()
+        };
+        (change, 1e6)
+    });
+}
+
+#[test]
+fn turned_and_mirrored_axes_change_no_answer() {
+    for (turned, mirrored) in [(true, false), (false, true), (true, true)] {
+        hold(|_| {
+            let change = Change {
+                turned,
+                mirrored,
+                ..Change::default()
+            };
+            (change, 1.0)
+        });
+    }
+}
+
+#[test]
+fn a_bystander_with_a_contact_of_its_own_changes_no_answer() {
+    for bystander in model::BYSTANDERS {
+        hold(|_| {
+            let change = Change {
+                bystander: Some(bystander),
+                ..Change::default()
+            };
+            (change, 1.0)
+        });
+    }
+}
+
+#[test]
+fn the_order_of_bodies_and_contacts_changes_no_answer() {
+    hold(|_| {
+        let change = Change {
+            reversed: true,
+            ..Change::default()
+        };
+        (change, 1.0)
+    });
+}
+
+#[test]
+fn units_change_no_answer() {
+    for length in [1e-3, 1e3] {
+        hold(|_| {
+            let change = Change {
+                length,
+                ..Change::default()
+            };
+            (change, 1.0)
+        });
+    }
+}

@@ -1,0 +1,289 @@
+//! Models from seeds, as they are and changed.
+
+use std::fmt::Write;
+
+use carom_testing::Random;
+
+/// What is beside a model, far away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bystander {
+    /// A heavy block that falls on a plane of its own.
+    Block,
+    /// A rigid block that falls on a plane of its own.
+    Rigid,
+    /// A heavy block that flies fast, and touches nothing.
+    Flier,
+}
+
+/// All of them.
+pub const BYSTANDERS: [Bystander; 3] = [Bystander::Block, Bystander::Rigid, Bystander::Flier];
+
+/// What is changed of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct Change {
+    /// Velocity added along the plane, m/s.
+    pub velocity: f64,
+    /// Way of the origin, m.
+    pub shift: [f64; 2],
+    /// Turned by a quarter.
+    pub turned: bool,
+    /// x reversed, before the turn.
+    pub mirrored: bool,
+    /// Bodies, meshes and contacts in reversed order.
+    pub reversed: bool,
+    /// All lengths times this, with densities and moduli such that times and strains stay.
+    pub length: f64,
+    pub bystander: Option<Bystander>,
+}
+
+impl Default for Change {
+    fn default() -> Change {
+        Change {
+            velocity: 0.0,
+            shift: [0.0; 2],
+            turned: false,
+            mirrored: false,
+            reversed: false,
+            length: 1.0,
+            bystander: None,
+        }
+    }
+}
+
+impl Change {
+    /// A force of the model as it is over that of the changed one: stresses stay, and so does the thickness.
+    pub fn force_unit(&self) -> f64 {
+        1.0 / self.length
+    }
+
+    /// A direction after mirror and turn.
+    fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let x = if self.mirrored { -x } else { x };
+        if self.turned { [-y, x] } else { [x, y] }
+    }
+
+    /// Lower corner and size of a rectangle after all changes, m.
+    fn rectangle(&self, origin: [f64; 2], size: [f64; 2]) -> [[f64; 2]; 2] {
+        let ends = [origin, [origin[0] + size[0], origin[1] + size[1]]].map(|x| self.direction(x));
+        let low = [0, 1].map(|i| ends[0][i].min(ends[1][i]));
+        let high = [0, 1].map(|i| ends[0][i].max(ends[1][i]));
+        [
+            [0, 1].map(|i| self.length * low[i] + self.shift[i]),
+            [0, 1].map(|i| self.length * (high[i] - low[i])),
+        ]
+    }
+
+    /// The name of a side after mirror and turn, of one along this outward direction.
+    fn side(&self, outward: [f64; 2]) -> &'static str {
+        match self.direction(outward) {
+            [x, _] if x > 0.5 => "right",
+            [x, _] if x < -0.5 => "left",
+            [_, y] if y > 0.5 => "top",
+            _ => "bottom",
+        }
+    }
+}
+
+/// A block of a model.
+#[derive(Clone, Debug)]
+struct Block {
+    origin: [f64; 2],
+    size: [f64; 2],
+    elements: [usize; 2],
+    velocity: [f64; 2],
+    young: f64,
+}
+
+/// A model: blocks above each other, the lowest above a plane or free.
+#[derive(Clone, Debug)]
+pub struct Model {
+    blocks: Vec<Block>,
+    on_plane: bool,
+    finite: bool,
+    law: &'static str,
+    scheme: &'static str,
+    friction: f64,
+    explicit: bool,
+}
+
+const LAWS: [&str; 5] = [
+    "law.velocity = {}",
+    "law.displacement = {}",
+    "law.penalty = { stiffness = STIFFNESS }",
+    "law.restitution = { coefficient = 0.0 }",
+    "law.velocity = { capture = \"half\" }",
+];
+
+const SCHEMES: [&str; 3] = [
+    "scheme.theta = { theta = 0.5 }",
+    "scheme.newmark = {}",
+    "scheme.theta = { theta = 0.6 }",
+];
+
+impl Model {
+    /// Of a seed.
+    pub fn new(seed: u64) -> Model {
+        let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1));
+        let mut of =
+            |count: usize| ((random.between(0.0, 1.0) * count as f64) as usize).min(count - 1);
+        let (count, on_plane) = [(1, true), (2, true), (2, false), (3, false)][of(4)];
+        let finite = of(2) == 1;
+        let explicit = of(3) == 0;
+        let law = match explicit {
+            true => LAWS[[0, 2, 3][of(3)]],
+            false => LAWS[of(LAWS.len())],
+        };
+        let scheme = if explicit {
+            "scheme.central-difference = {}"
+        } else {
+            SCHEMES[of(3)]
+        };
+        let friction = if finite && of(3) == 0 { 0.3 } else { 0.0 };
+        let mut blocks = Vec::new();
+        let mut y = 0.0;
+        for k in 0..count {
+            y += 2e-4 + 1e-4 * of(5) as f64;
+            let size = [0.1 + 0.01 * of(10) as f64, 0.05 + 0.01 * of(5) as f64];
+            let fall = 1.0 + of(4) as f64;
+            blocks.push(Block {
+                origin: [0.013 * of(5) as f64, y],
+                size,
+                elements: [1 + of(3), 1 + of(2)],
+                velocity: [0.0, if k == 0 && !on_plane { 0.0 } else { -fall }],
+                young: [1e8, 1e9, 2e9][of(3)],
+            });
+            y += size[1];
+        }
+        Model {
+            blocks,
+            on_plane,
+            finite,
+            law,
+            scheme,
+            friction,
+            explicit,
+        }
+    }
+
+    /// Least speed of a block that falls, m/s.
+    pub fn speed(&self) -> f64 {
+        1.0
+    }
+
+    /// Step, s.
+    pub fn step(&self) -> f64 {
+        if self.explicit { 2e-6 } else { 5e-6 }
+    }
+
+    /// End, s.
+    pub fn end(&self) -> f64 {
+        100.0 * self.step() + 6e-4
+    }
+
+    /// The case file.
+    pub fn text(&self, change: &Change) -> String {
+        let mut meshes: Vec<String> = Vec::new();
+        let mut tables: Vec<String> = Vec::new();
+        for (k, block) in self.blocks.iter().enumerate() {
+            meshes.push(mesh(&format!("b{k}"), block, change));
+            tables.push(self.body(&format!("b{k}"), block, change));
+        }
+        self.contacts(change, &mut tables);
+        if let Some(bystander) = change.bystander {
+            self.beside(bystander, change, (&mut meshes, &mut tables));
+        }
+        if change.reversed {
+            meshes.reverse();
+            tables.reverse();
+        }
+        format!(
+            "carom = 1\n[mesh]\n{}\n{}\n[time]\nend = {:?}\nstep = {:?}\n{}\n",
+            meshes.join("\n"),
+            tables.join("\n"),
+            self.end(),
+            self.step(),
+            self.scheme
+        )
+    }
+
+    fn body(&self, name: &str, block: &Block, change: &Change) -> String {
+        let along = if change.mirrored {
+            -change.velocity
+        } else {
+            change.velocity
+        };
+        let velocity = change.direction([block.velocity[0] + along, block.velocity[1]]);
+        let velocity = velocity.map(|v| change.length * v);
+        let kind = if self.finite { "neo-hooke" } else { "elastic" };
+        let density = 1000.0 / (change.length * change.length);
+        format!(
+            "[material.m{name}]\ndensity = {density:?}\n{kind} = {{ young = {:?}, poisson = 0.3 }}\n\
+             [body.{name}]\nregion = \"{name}\"\nmaterial = \"m{name}\"\nsection.plane-strain.thickness = 1.0\n\
+             initial.velocity = {velocity:?}",
+            block.young
+        )
+    }
+
+    fn contacts(&self, change: &Change, tables: &mut Vec<String>) {
+        let law = self
+            .law
+            .replace("STIFFNESS", &format!("{:?}", 1e10 / change.length));
+        let (top, bottom) = (change.side([0.0, 1.0]), change.side([0.0, -1.0]));
+        let mut rest = law;
+        if self.friction > 0.0 && !self.on_plane {
+            let _ = write!(rest, "\nfriction.coulomb = {:?}", self.friction);
+        }
+        if self.on_plane {
+            let (point, normal) = (change.shift, change.direction([0.0, 1.0]));
+            tables.push(format!(
+                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = {point:?}, normal = {normal:?} }}\n{rest}"
+            ));
+        }
+        for k in 1..self.blocks.len() {
+            tables.push(format!(
+                "[contact.c{k}]\nsecondary = \"b{k}.{bottom}\"\nprimary = \"b{}.{top}\"\n{rest}",
+                k - 1
+            ));
+        }
+    }
+
+    fn beside(
+        &self,
+        bystander: Bystander,
+        change: &Change,
+        (meshes, tables): (&mut Vec<String>, &mut Vec<String>),
+    ) {
+        let block = Block {
+            origin: [40.0, 0.001],
+            size: [2.0, 1.0],
+            elements: [2, 1],
+            velocity: match bystander {
+                Bystander::Flier => [500.0, 0.0],
+                Bystander::Block | Bystander::Rigid => [0.0, -2.0],
+            },
+            young: 1e9,
+        };
+        meshes.push(mesh("z", &block, change));
+        let mut body = self.body("z", &block, change);
+        if bystander == Bystander::Rigid {
+            body += "\nrigid = {}";
+        }
+        tables.push(body);
+        if bystander != Bystander::Flier {
+            tables.push(
+                "[contact.z]\nsecondary = \"z.bottom\"\nobstacle.plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+                 law.velocity = {}"
+                    .to_owned(),
+            );
+        }
+    }
+}
+
+fn mesh(name: &str, block: &Block, change: &Change) -> String {
+    let [origin, size] = change.rectangle(block.origin, block.size);
+    let [x, y] = block.elements;
+    let elements = if change.turned { [y, x] } else { [x, y] };
+    format!(
+        "generate.{name}.rectangle = {{ origin = {origin:?}, size = {size:?}, elements = {elements:?} }}"
+    )
+}
