@@ -248,6 +248,9 @@ impl Driver {
                 held.add(rigid.of([(i, 1.0)]));
             }
         }
+        for row in rigid.held_inside() {
+            held.add(row);
+        }
         for body in &self.system.bodies {
             body.each_spring(&mut |row| {
                 held.add(rigid.of(row.iter().copied()));

@@ -158,7 +158,12 @@ pub(super) fn body_of(system: &System, part: &Range<usize>) -> String {
 
 /// Name of a body with a node.
 fn body_at(system: &System, first: u32) -> String {
-    let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
-    let body = system.body_masses.iter().position(owns).unwrap_or(0);
-    system.bodies[body].name().to_string()
+    let bodies = system.bodies.iter().zip(&system.body_masses);
+    let mut owners = bodies.filter(|(body, masses)| {
+        // the amplitudes of a reduced body are at a node of their own
+        let amplitudes = body.as_reduced().and_then(|body| body.nodes().last());
+        amplitudes == Some(&first) || masses.iter().any(|(node, _)| *node == first)
+    });
+    let owner = owners.next().map_or(&system.bodies[0], |(body, _)| body);
+    owner.name().to_string()
 }

@@ -7,9 +7,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use carom_algebra::basis::Amplitude;
 use carom_algebra::unknowns::Kind;
+use carom_bodies::{Body, Reduced};
 
-use super::rigid::{INDEPENDENT, Mode, modes, turn_of};
+use super::rigid::{INDEPENDENT, Mode, held_inside, modes, of_amplitude, turn_of};
 use crate::system::System;
 
 /// Nodes that move as one.
@@ -30,6 +32,8 @@ pub(super) struct Joined<'a> {
     group: Vec<usize>,
     first: u32,
     modes: Vec<Mode>,
+    /// The amplitudes of the part, by unknown.
+    amplitudes: BTreeMap<usize, &'a Amplitude>,
 }
 
 impl<'a> Joined<'a> {
@@ -38,27 +42,22 @@ impl<'a> Joined<'a> {
         Joined::new(system, part, |leaders| leaders.fill(0))
     }
 
-    /// A part as the groups of nodes that elements join. The modes of a reduced body count as held: where one is in the part, it is
-    /// taken as a whole.
+    /// A part as the groups of nodes that elements join; those of a reduced body are one.
     pub(super) fn apart(system: &'a System, part: &Range<usize>) -> Joined<'a> {
         let first = system.nodes_of(part).start;
         let inside = |node: u32| part.contains(&system.unknowns.first(node));
         Joined::new(system, part, |leaders| {
             for body in &system.bodies {
-                let reduced = body.as_reduced().is_some();
                 if body.as_discrete().is_some() {
                     continue;
                 }
                 let mut own = false;
                 body.each_element(&mut |nodes| {
                     own |= inside(nodes[0]);
-                    for &node in nodes.iter().filter(|_| own && !reduced) {
+                    for &node in nodes.iter().filter(|_| own) {
                         unite(leaders, [nodes[0], node].map(|n| n as usize - first));
                     }
                 });
-                if reduced && own {
-                    leaders.fill(0);
-                }
             }
         })
     }
@@ -98,9 +97,11 @@ impl<'a> Joined<'a> {
                 size: if size > 0.0 { size } else { 1.0 },
             }
         });
+        let amplitudes = system.unknowns.amplitudes();
         Joined {
             groups: groups.collect(),
             system,
+            amplitudes: amplitudes.filter(|(i, _)| part.contains(i)).collect(),
             part: part.clone(),
             group,
             first,
@@ -115,6 +116,11 @@ impl<'a> Joined<'a> {
         let mut held = Echelon::new(self.groups.len() * count);
         for unknown in self.part.clone().filter(|&i| self.system.fixed[i]) {
             held.add(self.row([(unknown, 1.0)]));
+        }
+        for body in self.system.bodies.iter().filter_map(Body::as_reduced) {
+            for (node, kind) in held_inside(self.system, body) {
+                held.add(self.row_inside(body, (node, kind)));
+            }
         }
         for body in &self.system.bodies {
             body.each_spring(&mut |row| {
@@ -166,21 +172,52 @@ impl<'a> Joined<'a> {
         row
     }
 
+    /// The group of a node; none of a node of another part.
+    fn group_of(&self, node: u32) -> Option<usize> {
+        let own = node.checked_sub(self.first)?;
+        let group = self.group.get(own as usize)?;
+        (*group != usize::MAX).then_some(*group)
+    }
+
+    /// By coordinate what a node that a reduced body has not retained does in the motions; nothing of a body of another part.
+    fn row_inside(&self, body: &Reduced, of: (u32, Kind)) -> BTreeMap<usize, f64> {
+        let group = body.nodes().iter().find_map(|&node| self.group_of(node));
+        let Some(g) = group else {
+            return BTreeMap::new();
+        };
+        let modes = self.modes.iter().enumerate();
+        let values = modes.map(|(k, mode)| {
+            let value = self.value_at(&self.groups[g], mode, of);
+            (g * self.modes.len() + k, value)
+        });
+        values.collect()
+    }
+
     /// The value of a motion at an unknown.
     fn value(&self, group: &Group, mode: &Mode, unknown: usize) -> f64 {
         let unknowns = &self.system.unknowns;
         let node = unknowns.node(unknown);
-        let place = &self.system.x[node as usize];
         match (unknowns.kind(unknown), unknowns.frame(node)) {
-            (Kind::Translation(axis), _) => {
-                mode.1(&[0, 1, 2].map(|j| (place[j] - group.centre[j]) / group.size))[axis]
-            }
-            (Kind::Rotation(axis), None) => turn_of(mode)[axis] / group.size,
             (Kind::Rotation(axis), Some(frame)) => {
                 let (matrix, turn) = (self.system.initial_frames[frame].matrix(), turn_of(mode));
                 (0..3).map(|i| matrix[(i, axis)] * turn[i]).sum::<f64>() / group.size
             }
-            (Kind::Amplitude(_), _) => 0.0,
+            (Kind::Amplitude(_), _) => self.amplitudes.get(&unknown).map_or(0.0, |amplitude| {
+                of_amplitude(mode, (&group.centre, group.size), amplitude)
+            }),
+            (kind, _) => self.value_at(group, mode, (node, kind)),
+        }
+    }
+
+    /// The same at a translation or a small rotation of a node.
+    fn value_at(&self, group: &Group, mode: &Mode, (node, kind): (u32, Kind)) -> f64 {
+        let place = &self.system.x[node as usize];
+        match kind {
+            Kind::Translation(axis) => {
+                mode.1(&[0, 1, 2].map(|j| (place[j] - group.centre[j]) / group.size))[axis]
+            }
+            Kind::Rotation(axis) => turn_of(mode)[axis] / group.size,
+            Kind::Amplitude(_) => 0.0,
         }
     }
 }

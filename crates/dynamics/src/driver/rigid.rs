@@ -3,9 +3,12 @@
 //! A motion of the iterations is linear in its coordinates; a turn by a finite angle is not, and its linear motion stretches the
 //! body by θ²/2. What is missing is added: `u = (exp(θ×) - 1 - θ×) d`, d from the centre of the part.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
+use carom_algebra::basis::Amplitude;
 use carom_algebra::unknowns::Kind;
+use carom_bodies::{Body, Reduced};
 use carom_contact::Rows;
 
 use crate::system::System;
@@ -21,6 +24,8 @@ pub(super) struct Rigid<'a> {
     frames: Vec<Frame>,
     /// Places of the nodes, m.
     places: Vec<[f64; 3]>,
+    /// The amplitudes of reduced bodies, by unknown.
+    amplitudes: BTreeMap<usize, &'a Amplitude>,
 }
 
 /// What scales the motions of a part.
@@ -34,6 +39,20 @@ struct Frame {
     squares: Vec<f64>,
     /// Whether it turns by finite angles: a body at small strain does not, and one with supports turns about them.
     spins: bool,
+}
+
+impl Frame {
+    /// The value of a motion at a translation or a small rotation of a node at a place.
+    fn value(&self, mode: &Mode, (place, kind): (&[f64; 3], Kind)) -> f64 {
+        match kind {
+            Kind::Translation(axis) => {
+                let x = [0, 1, 2].map(|j| (place[j] - self.centre[j]) / self.size);
+                self.unit * mode.1(&x)[axis]
+            }
+            Kind::Rotation(axis) => self.unit / self.size * turn_of(mode)[axis],
+            Kind::Amplitude(_) => 0.0,
+        }
+    }
 }
 
 impl<'a> Rigid<'a> {
@@ -76,6 +95,7 @@ impl<'a> Rigid<'a> {
             modes: modes(dim, system.axisymmetric),
             frames: frames.collect(),
             places,
+            amplitudes: system.unknowns.amplitudes().collect(),
         };
         for (k, part) in parts.iter().enumerate() {
             let mut squares = vec![0.0; rigid.modes.len()];
@@ -96,19 +116,40 @@ impl<'a> Rigid<'a> {
         let frame = &self.frames[part];
         let unknowns = &self.system.unknowns;
         let node = unknowns.node(unknown);
-        let (turns, i) = match unknowns.kind(unknown) {
-            Kind::Translation(axis) => (false, axis),
-            Kind::Rotation(axis) if unknowns.frame(node).is_none() => (true, axis),
+        let kind = unknowns.kind(unknown);
+        let amplitude = match kind {
             // finite rotations are not linear in the coordinates
-            Kind::Rotation(_) | Kind::Amplitude(_) => return None,
+            Kind::Rotation(_) if unknowns.frame(node).is_some() => return None,
+            Kind::Translation(_) | Kind::Rotation(_) => None,
+            Kind::Amplitude(_) => Some(*self.amplitudes.get(&unknown)?),
         };
         let place = &self.places[node as usize];
-        let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);
-        let values = self.modes.iter().map(move |mode| match turns {
-            false => frame.unit * mode.1(&x)[i],
-            true => frame.unit / frame.size * turn_of(mode)[i],
+        let values = self.modes.iter().map(move |mode| match amplitude {
+            None => frame.value(mode, (place, kind)),
+            Some(of) => frame.unit * of_amplitude(mode, (&frame.centre, frame.size), of),
         });
         Some((part * self.modes.len(), values))
+    }
+
+    /// Rows on the motions of what supports hold inside reduced bodies.
+    pub(super) fn held_inside(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
+        let bodies = self.system.bodies.iter().filter_map(Body::as_reduced);
+        bodies.flat_map(move |body| {
+            let mut unknowns = body.unknowns().iter();
+            let part = unknowns.find_map(|unknown| self.part_of(*unknown as usize));
+            let held = part.into_iter().flat_map(move |part| {
+                let held = held_inside(self.system, body);
+                held.map(move |of| (part, of))
+            });
+            held.map(move |(part, (node, kind))| {
+                let (frame, place) = (&self.frames[part], &self.places[node as usize]);
+                let mut row = vec![0.0; self.parts.len() * self.modes.len()];
+                for (value, mode) in row[self.coordinates(part)].iter_mut().zip(&self.modes) {
+                    *value = frame.value(mode, (place, kind));
+                }
+                row
+            })
+        })
     }
 
     /// The part of an unknown; none of one that does not float.
@@ -254,15 +295,16 @@ fn spins(system: &System, part: &Range<usize>) -> bool {
     !stiff && !part.clone().any(|unknown| system.fixed[unknown])
 }
 
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
 /// (exp(θ×) - 1 - θ×) d.
 fn beyond_linear(turn: &[f64; 3], from: &[f64; 3]) -> [f64; 3] {
-    let cross = |a: &[f64; 3], b: &[f64; 3]| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
     let once = cross(turn, from);
     let twice = cross(turn, &once);
     let angle = norm(turn);
@@ -328,6 +370,28 @@ pub(super) fn turn_of((_, shape): &Mode) -> [f64; 3] {
     }
     let [of_x, of_y, of_z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| shape(&e));
     [of_y[2], of_z[0], of_x[1]]
+}
+
+/// The part of an amplitude in a motion of places relative to a centre over a size (m): a turn about the centre is one about the origin
+/// less the way of the centre in it.
+pub(super) fn of_amplitude(
+    mode: &Mode,
+    (centre, size): (&[f64; 3], f64),
+    amplitude: &Amplitude,
+) -> f64 {
+    let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let (turn, shift) = (turn_of(mode), mode.1(&[0.0; 3]));
+    let way = dot(&cross(&turn, centre), &amplitude.translation);
+    dot(&shift, &amplitude.translation) + (dot(&turn, &amplitude.rotation) - way) / size
+}
+
+/// What supports hold of the nodes that a reduced body has not retained.
+pub(super) fn held_inside<'a>(
+    system: &'a System,
+    body: &'a Reduced,
+) -> impl Iterator<Item = (u32, Kind)> + 'a {
+    let held = body.reduction().held.iter();
+    held.map(|&(node, kind)| (system.number[node as usize], kind))
 }
 
 pub(super) fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {
