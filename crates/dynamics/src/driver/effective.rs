@@ -18,6 +18,7 @@ use carom_ranks::Ranks;
 use super::linear_part::linear_part;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
+use super::pieces::Pieces;
 use super::tangent_solver::tangent_solver;
 use crate::at_rows::AtRows;
 use crate::choice;
@@ -118,8 +119,8 @@ pub(super) struct At<'a> {
     pub(super) history: &'a [f64],
     /// The rows of the links there.
     pub(super) rows: &'a Arc<Vec<LinkRow>>,
-    /// Parts with a proximal term, and its part of the diagonal.
-    pub(super) proximal: (&'a [Range<usize>], f64),
+    /// Pieces with a proximal term, and its part of the diagonal.
+    pub(super) proximal: (Option<&'a Pieces>, f64),
     /// Whether the derivative without contact forces is kept, where all parts have one that changes.
     pub(super) whole: bool,
     /// Whether the curvature of contacts is taken within each of their sides alone, where passes make up for what couples the two.

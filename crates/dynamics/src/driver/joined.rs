@@ -11,7 +11,7 @@ use carom_algebra::basis::Amplitude;
 use carom_algebra::unknowns::Kind;
 use carom_bodies::{Body, Reduced};
 
-use super::rigid::{INDEPENDENT, Mode, held_inside, modes, of_amplitude, turn_of};
+use super::rigid::{INDEPENDENT, Mode, ROUNDING, held_inside, modes, of_amplitude, turn_of};
 use crate::system::System;
 
 /// Nodes that move as one.
@@ -109,11 +109,9 @@ impl<'a> Joined<'a> {
         }
     }
 
-    /// As many motions as nothing holds, group and name of each: first those that are free by themselves. In a part of several groups
-    /// that nothing holds as a whole the motions of the whole are among them.
-    pub(super) fn free(&self) -> Vec<(&Group, &'static str)> {
-        let count = self.modes.len();
-        let mut held = Echelon::new(self.groups.len() * count);
+    /// What supports, springs and constraints hold of the motions.
+    fn held(&self) -> Echelon {
+        let mut held = Echelon::new(self.groups.len() * self.modes.len());
         for unknown in self.part.clone().filter(|&i| self.system.fixed[i]) {
             held.add(self.row([(unknown, 1.0)]));
         }
@@ -130,6 +128,25 @@ impl<'a> Joined<'a> {
         for row in self.system.link_rows.iter() {
             held.add(self.row(row.iter().map(|&(unknown, c)| (unknown as usize, c))));
         }
+        held
+    }
+
+    /// The groups that move in any motion that nothing holds.
+    pub(super) fn loose(&self) -> impl Iterator<Item = &Group> {
+        let (held, count) = (self.held(), self.modes.len());
+        let groups = self.groups.iter().enumerate();
+        let loose = groups.filter(move |(g, group)| {
+            let mut motions = self.modes.iter().enumerate();
+            motions.any(|(k, mode)| self.moves(group, mode) && !held.holds(g * count + k))
+        });
+        loose.map(|(_, group)| group)
+    }
+
+    /// As many motions as nothing holds, group and name of each: first those that are free by themselves. In a part of several groups
+    /// that nothing holds as a whole the motions of the whole are among them.
+    pub(super) fn free(&self) -> Vec<(&Group, &'static str)> {
+        let count = self.modes.len();
+        let mut held = self.held();
         let mut motions = Vec::new();
         for (g, group) in self.groups.iter().enumerate() {
             let own = self.modes.iter().enumerate();
@@ -154,10 +171,11 @@ impl<'a> Joined<'a> {
         own.any(|unknown| self.value(group, mode, unknown) != 0.0)
     }
 
-    /// Σ f_i r_j(i) by coordinate j of unknowns i of the part and their values f.
+    /// Σ f_i r_j(i) by coordinate j of unknowns i of the part and their values f; nothing where all of it is what rounding leaves of its
+    /// terms, as of a spring between two nodes of a group.
     fn row(&self, terms: impl IntoIterator<Item = (usize, f64)>) -> BTreeMap<usize, f64> {
         let count = self.modes.len();
-        let mut row = BTreeMap::new();
+        let (mut row, mut size) = (BTreeMap::new(), 0.0_f64);
         for (unknown, f) in terms {
             if !self.part.contains(&unknown) {
                 continue;
@@ -165,10 +183,12 @@ impl<'a> Joined<'a> {
             let node = self.system.unknowns.node(unknown);
             let g = self.group[(node - self.first) as usize];
             for (k, mode) in self.modes.iter().enumerate() {
-                *row.entry(g * count + k).or_default() +=
-                    f * self.value(&self.groups[g], mode, unknown);
+                let term = f * self.value(&self.groups[g], mode, unknown);
+                *row.entry(g * count + k).or_default() += term;
+                size = size.max(term.abs());
             }
         }
+        row.retain(|_, sum: &mut f64| sum.abs() > ROUNDING * size);
         row
     }
 
@@ -249,6 +269,24 @@ impl Echelon {
         for &column in row.keys() {
             self.known[column] = true;
         }
+        let mut row = self.rest(row);
+        let largest = row.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let Some((&pivot, &value)) = largest else {
+            return false;
+        };
+        row.values_mut().for_each(|v| *v /= value);
+        self.of[pivot] = Some(self.rows.len());
+        self.rows.push((pivot, row));
+        true
+    }
+
+    /// Whether a column is zero in all that the rows leave.
+    fn holds(&self, column: usize) -> bool {
+        self.known[column] && self.rest(BTreeMap::from([(column, 1.0)])).is_empty()
+    }
+
+    /// What of a row is independent of those there.
+    fn rest(&self, mut row: BTreeMap<usize, f64>) -> BTreeMap<usize, f64> {
         // the earliest pivot first: later rows have nothing there
         while let Some(k) = row.keys().filter_map(|&column| self.of[column]).min() {
             let (pivot, other) = &self.rows[k];
@@ -259,14 +297,7 @@ impl Echelon {
             row.remove(pivot);
             row.retain(|_, v| v.abs() > INDEPENDENT);
         }
-        let largest = row.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let Some((&pivot, &value)) = largest else {
-            return false;
-        };
-        row.values_mut().for_each(|v| *v /= value);
-        self.of[pivot] = Some(self.rows.len());
-        self.rows.push((pivot, row));
-        true
+        row
     }
 }
 

@@ -39,7 +39,7 @@ fn made(name: String, cell: carom_mesh::ElementId, kind: DiscreteKind) -> ModelD
 }
 
 /// Adds a spring or a dashpot between nodes, or a node and the ground.
-fn link(
+pub(crate) fn link(
     model: &mut Model,
     nodes: &[u32],
     kind: fn(Link) -> DiscreteKind,
