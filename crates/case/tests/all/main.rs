@@ -17,6 +17,7 @@ mod means;
 mod offset;
 mod pieces;
 mod quadrature;
+mod quiet;
 mod ranks;
 mod ranks_contacts;
 mod ranks_implicit;
