@@ -31,6 +31,7 @@ mod repeat;
 mod resume;
 mod simulation;
 mod stage_one;
+mod stages;
 mod stops;
 mod verdict;
 mod warnings;

@@ -35,7 +35,7 @@ impl Driver {
             return Ok(());
         };
         self.renew_stable(self.state.control.dt)?;
-        let control = self.state.control;
+        let control = self.control();
         let first = self.unplanned.take().unwrap_or(control.dt);
         let forced = self.is_forced();
         let (mut control, attempts) = adapt(self, (control, first), (rules, system.dt), forced)?;
@@ -55,7 +55,7 @@ impl Driver {
         let size = self.size_of_step(planned)?;
         let end = self.end_of_step(size);
         let whole = self.stable_level(end - first)?;
-        let mut control = self.state.control;
+        let mut control = self.control();
         let (mut done, mut level) = (0u64, whole);
         // a cause that an attempt has named says more than the end of the last one
         let mut unheld: Option<Error> = None;
@@ -114,6 +114,15 @@ impl Driver {
         self.report.join_parts();
         self.accept(control, size);
         Ok(())
+    }
+
+    /// What the control remembers: of the sizes of steps those of the dynamics alone, once these have begun.
+    fn control(&self) -> Control {
+        let mut control = self.state.control;
+        if self.state.step == self.system.static_steps() {
+            control.range = [0.0; 2];
+        }
+        control
     }
 
     /// Times that a step of fixed size may be halved: none where all of it is linear, whose failures have other causes.
