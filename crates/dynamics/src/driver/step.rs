@@ -59,6 +59,7 @@ impl Driver {
         let (mut done, mut level) = (0u64, whole);
         // a cause that an attempt has named says more than the end of the last one
         let mut unheld: Option<Error> = None;
+        let mut indefinite = false;
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
         let most = self.most_halvings();
@@ -92,6 +93,7 @@ impl Driver {
                 }
                 Err(error) if level < most => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
+                    indefinite |= is_indefinite(&error);
                     if matches!(error, Error::Unheld { .. }) {
                         unheld.get_or_insert(error);
                     }
@@ -103,7 +105,14 @@ impl Driver {
                         self.state = start;
                         self.leave_direct();
                     }
-                    return Err(unheld.unwrap_or(error));
+                    indefinite |= is_indefinite(&error);
+                    let error = unheld.unwrap_or(error);
+                    return Err(match indefinite && self.is_static() && !self.floats() {
+                        true => Error::Unstable {
+                            cause: Box::new(error),
+                        },
+                        false => error,
+                    });
                 }
             }
         }
@@ -179,6 +188,18 @@ impl Driver {
         let next = self.state.step + 1;
         self.forced.is_some_and(|every| next.is_multiple_of(every))
     }
+}
+
+/// Whether a matrix was not positive definite.
+fn is_indefinite(error: &Error) -> bool {
+    use carom_algebra::Error::NotPositiveDefinite;
+    matches!(
+        error,
+        Error::Factor {
+            cause: NotPositiveDefinite { .. },
+            ..
+        }
+    )
 }
 
 impl Attempts for Driver {
