@@ -13,6 +13,7 @@ mod forged;
 mod general;
 mod grades;
 mod large;
+mod levels;
 mod losses;
 mod means;
 mod offset;
