@@ -15,7 +15,7 @@ pub(crate) use self::foot::{faces_point, foot_on, hull, spread};
 use self::group::Group;
 use self::guess::Guesses;
 use self::kept::{Kept, squared};
-use crate::rest::Rest;
+use crate::rest::{BLOCK, Rest};
 use crate::sight::View;
 use crate::{Places, Point, Sight};
 
@@ -58,12 +58,12 @@ pub struct Search {
 
 /// The way of a point over the faces in the iterations of a step.
 #[derive(Clone, Debug, Default)]
-struct Way {
+pub(crate) struct Way {
     /// The faces, each once, that of the last iteration last.
     faces: Vec<u32>,
     returns: u32,
     /// The face that it stays with.
-    held: Option<u32>,
+    pub held: Option<u32>,
 }
 
 /// A point that stays with a face until the step ends.
@@ -71,8 +71,8 @@ struct Way {
 pub struct Held {
     /// Its place in the contact.
     pub point: usize,
-    /// Gap to the plane of the face, or to the point of its rim where the point is beyond it, less that to the closest face,
-    /// over the diagonal of the face.
+    /// Gap to the plane of the face, or to the point of its rim where the point is beyond it, less that to the closest face, of
+    /// surfaces with a sight to the closest of those that it has gone over, over the diagonal of the face.
     pub error: f64,
 }
 
@@ -93,8 +93,6 @@ impl Search {
         faces: &[Face],
         (travelled, shift): (f64, [f64; 3]),
     ) {
-        self.watches = false;
-        self.ways.clear();
         if let Some((before, from)) = self.rested {
             let shift = [0, 1, 2].map(|i| shift[i] - from[i]);
             if self.faces.has_moved(faces.len(), travelled - before, shift) {
@@ -146,10 +144,24 @@ impl Search {
 
     /// Begins a step of several pairings. In a fold between two faces whose normals push a point each towards the other it
     /// would go to and fro for ever: a point near its face that comes back a second time stays with the face, also where
-    /// its foot is beyond the rim, until the next call. Surfaces with a sight are left alone.
+    /// its foot is beyond the rim, until the next call.
     pub fn begin_step(&mut self) {
         self.watches = true;
         self.ways.clear();
+        self.groups.iter_mut().for_each(|group| group.ways.clear());
+    }
+
+    /// Ends the step of several pairings.
+    pub(crate) fn forget_ways(&mut self) {
+        if self.watches {
+            self.begin_step();
+            self.watches = false;
+        }
+    }
+
+    /// Whether ways over the faces are looked at.
+    pub(crate) fn watches(&self) -> bool {
+        self.watches
     }
 
     /// The closest point of a surface, if the point faces it; on the face that holds it, if one does.
@@ -165,12 +177,11 @@ impl Search {
             self.next += 1;
             return Some(foot_on(places, faces, held, x));
         }
-        let watched = self.watches && view.is_none();
         let found = self
             .closest((places, faces), view, x, f64::INFINITY)
             .filter(|(foot, face)| faces_point(foot, face));
-        if let (true, Some((foot, face)), Some(item)) = (watched, &found, self.kept[slot].face)
-            && foot.gap.abs() < NEAR * diagonal(places, face)
+        if let (true, Some((foot, face)), Some(item)) = (self.watches, &found, self.kept[slot].face)
+            && is_between(places, foot, face)
         {
             if self.ways.len() <= slot {
                 self.ways.resize(slot + 1, Way::default());
@@ -180,20 +191,29 @@ impl Search {
         found
     }
 
-    /// The points that stay with a face, and how far off they are in this configuration.
+    /// The points that stay with a face, and how far off they are in this configuration. `sees`: whether the surface has a sight.
     pub(crate) fn held(
         &self,
-        places: &Places,
+        (places, sees): (&Places, bool),
         faces: &[Face],
         place: impl Fn(usize) -> [f64; 3],
     ) -> Vec<Held> {
-        let held = self.ways.iter().enumerate();
+        let of_groups = self.groups.iter().enumerate().flat_map(|(k, group)| {
+            let ways = group.ways.iter().enumerate();
+            ways.map(move |(slot, way)| (k * BLOCK + slot, way))
+        });
+        let held = self.ways.iter().enumerate().chain(of_groups);
         let of = |(point, way): (usize, &Way)| {
+            let item = way.held?;
             let x = place(point);
-            let (foot, face) = foot_on(places, faces, way.held?, &x);
-            let measure = |item| foot_on(places, faces, item, &x).0.distance;
-            let closest = self.faces.nearest(&x, 0.0, measure)?;
-            let off = foot.gap - foot_on(places, faces, closest, &x).0.gap;
+            let (foot, face) = foot_on(places, faces, item, &x);
+            let measure = |item: u32| foot_on(places, faces, item, &x).0.distance;
+            let closest = match sees {
+                // what is closest may be out of view
+                true => way.closest(measure),
+                false => self.faces.nearest(&x, 0.0, measure),
+            };
+            let off = foot.gap - foot_on(places, faces, closest?, &x).0.gap;
             Some(Held {
                 point,
                 error: off / diagonal(places, face),
@@ -227,7 +247,15 @@ impl Search {
 }
 
 impl Way {
-    fn goes(&mut self, item: u32) {
+    /// The first of its faces that are closest, by their distances.
+    fn closest(&self, measure: impl Fn(u32) -> f64) -> Option<u32> {
+        let faces = self.faces.iter().map(|&item| (item, measure(item)));
+        let closest = faces.min_by(|a, b| a.1.total_cmp(&b.1));
+        closest.map(|(item, _)| item)
+    }
+
+    /// Goes on to a face.
+    pub fn goes(&mut self, item: u32) {
         if self.faces.last() == Some(&item) {
             return;
         }
@@ -238,6 +266,11 @@ impl Way {
         }
         self.faces.push(item);
     }
+}
+
+/// Whether a point is so near to its face that it may go to and fro between that and another one.
+pub(crate) fn is_between(places: &Places, foot: &Projection, face: &Face) -> bool {
+    foot.gap.abs() < NEAR * diagonal(places, face)
 }
 
 /// Diagonal of the box of a face, m.

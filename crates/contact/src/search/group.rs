@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Way;
 use super::faces::Scratch;
 use super::kept::Kept;
 
@@ -10,6 +11,10 @@ use super::kept::Kept;
 pub(crate) struct Group {
     /// What each point remembers.
     pub kept: Vec<Kept>,
+    /// The way of each point over the faces in the step, where such are looked at.
+    pub ways: Vec<Way>,
+    /// Whether they are.
+    pub watches: bool,
     pub scratch: Scratch,
     /// Which of the points that are due are in the group.
     pub due: Range<usize>,
