@@ -230,8 +230,8 @@ pub enum Error {
     },
     /// A static step without equilibrium, near which the stiffness is not positive definite.
     #[error(
-        "{cause}; the stiffness near it is not positive definite, as beyond a limit point or a bifurcation, where bodies move on by themselves to \
-         another equilibrium: end the static stage before it and go on with the dynamics"
+        "{cause}; the stiffness near it is not positive definite, as beyond a limit point or a bifurcation, from where bodies snap to another \
+         equilibrium: take more iterations (passes), or end the static stage before it and go on with the dynamics"
     )]
     Unstable {
         /// The error of the last attempt.

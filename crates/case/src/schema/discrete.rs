@@ -32,6 +32,9 @@ pub struct PointMass {
     /// Initial state of its own node. On a group: of its nodes, in place of that of their body. Default: at rest at its place,
     /// on a group as the body.
     pub initial: Option<Initial>,
+    /// Whether its nodes wait for the dynamics: over a static stage they are held where they are, as by a support.
+    #[serde(default)]
+    pub hold: bool,
 }
 
 /// Names of the two ends of a discrete element.

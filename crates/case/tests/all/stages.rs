@@ -105,3 +105,53 @@ time = { end = 1.0005, step = 1e-6, static = { end = 1.0, steps = 1 }, scheme.th
     let closing = summary.contacts["hit"].first_closing.unwrap();
     assert!((closing - 1.0003).abs() < 2e-6, "{closing}");
 }
+
+/// A ram above a bar that is pulled in the stage: its weight would let it fall, and nothing else holds it.
+fn ram(body: &str) -> String {
+    format!(
+        r#"
+carom = 1
+mesh.generate.post.rectangle = {{ origin = [0.0, 0.0], size = [0.1, 0.1], elements = [2, 2] }}
+mesh.generate.ram.rectangle = {{ origin = [0.0, 0.1001], size = [0.1, 0.1], elements = [2, 2] }}
+material.m = {{ density = 1000.0, elastic = {{ young = 1e8, poisson = 0.0 }} }}
+body.post = {{ region = "post", material = "m", section.plane-strain.thickness = 0.1 }}
+body.ram = {{ region = "ram", material = "m", section.plane-strain.thickness = 0.1, initial.velocity = [0.0, -1.0]{body} }}
+support.foot = {{ on = "post.bottom", fix = ["x", "y"] }}
+load.g.acceleration = [0.0, -10.0]
+contact.c = {{ secondary = "ram.bottom", primary = "post.top", law.velocity = {{}} }}
+probe.r = {{ on = "ram.top", record = ["displacement", "velocity"] }}
+time = {{ end = 1.0004, step = 1e-6, static = {{ end = 1.0, steps = 2 }}, scheme.theta.theta = 0.6 }}
+"#
+    )
+}
+
+#[test]
+fn a_body_that_is_held_waits_for_the_dynamics_and_is_free_then() {
+    for body in [", hold = true", ", hold = true, rigid = {}"] {
+        let (summary, histories) = result(&ram(body));
+        let (times, way) = (&histories["time_s"], &histories["probe.r.displacement_y_m"]);
+        let at = times.iter().position(|time| *time >= 1.0).unwrap();
+        // held as by a support; nodes of a rigid body are placed from its centre, to rounding
+        assert!(way[at].abs() < 1e-15, "{body}: {:e}", way[at]);
+        // 0.1 mm and what the post has sunk, g ρ h²/(2 E) = 0.5 um, at 1 m/s; gravity adds g t²/2 = 0.05 um; to two steps
+        let closing = summary.contacts["c"].first_closing.unwrap();
+        assert!((closing - 1.0001005).abs() < 2e-6, "{closing}");
+    }
+    // without the word it would fall on the post in the stage: a static equilibrium
+    let (summary, _) = result(&ram(""));
+    let closing = summary.contacts["c"].first_closing.unwrap();
+    assert!(closing <= 1.0, "{closing}");
+}
+
+#[test]
+fn a_body_that_is_held_without_a_static_stage_is_refused() {
+    let text = ram(", hold = true").replace("static = { end = 1.0, steps = 2 }, ", "");
+    let input = Input::from_text("case.toml", &text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    let problems = build(&case, &locator, &input).err().unwrap();
+    assert!(
+        problems[0].message.contains("the case has none"),
+        "{}",
+        problems[0].message
+    );
+}

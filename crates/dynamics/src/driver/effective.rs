@@ -153,7 +153,16 @@ impl Effective {
     /// Shares the products of iterations with others. Matrices at hand are made anew.
     pub(super) fn share(&mut self, ranks: &Ranks) {
         self.ranks = ranks.clone();
-        (self.now, self.kept, self.aside) = (None, Vec::new(), None);
+        self.forget();
+    }
+
+    /// Drops all matrices: they are made anew.
+    pub(super) fn forget(&mut self) {
+        let aside = self.aside.take().map(|aside| *aside);
+        let all = self.now.take().into_iter().chain(self.kept.drain(..));
+        for dropped in all.chain(aside) {
+            dropped.add_work(&mut self.retired);
+        }
     }
 
     /// Whether the matrices at hand are those of these maps.

@@ -122,6 +122,8 @@ static AT_REST: Law = Law::Displacement(Displacement { projection: false });
 /// Takes steps.
 pub struct Driver {
     system: Arc<System>,
+    /// That of the dynamics, as long as bodies wait for these in a static stage.
+    released: Option<Arc<System>>,
     /// Size of the attempt under way, s, and the maps of the zones.
     dt: f64,
     maps: Maps,
