@@ -5,7 +5,6 @@
 //! between two of them, these parts have one matrix together.
 
 use std::cmp::Reverse;
-use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::csr::Csr;
