@@ -14,7 +14,9 @@ use self::faces::{FaceTree, Question, Scratch};
 pub(crate) use self::foot::{faces_point, foot_on, hull, spread};
 use self::group::Group;
 use self::guess::Guesses;
-use self::kept::{Kept, squared};
+use self::kept::Kept;
+use self::way::diagonal;
+pub(crate) use self::way::{Way, is_between};
 use crate::rest::{BLOCK, Rest};
 use crate::sight::View;
 use crate::{Places, Point, Sight};
@@ -25,12 +27,7 @@ mod foot;
 pub(crate) mod group;
 pub(crate) mod guess;
 pub(crate) mod kept;
-
-/// Returns of a point, within one step, to a face that it has left in it, after which it stays with that face.
-const RETURNS: u32 = 2;
-
-/// Gap beyond which a point between two faces is left alone, over the diagonal of the face.
-const NEAR: f64 = 0.1;
+mod way;
 
 /// Memory of the search of one contact, renewed at each pairing. What it holds does not matter to results, but for the points
 /// that [`Search::begin_step`] lets it hold.
@@ -54,16 +51,6 @@ pub struct Search {
     pub(crate) groups: Vec<Group>,
     /// Bound of the motion, and drift, when the boxes were taken while points rested, m; none if they were not.
     rested: Option<(f64, [f64; 3])>,
-}
-
-/// The way of a point over the faces in the iterations of a step.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Way {
-    /// The faces, each once, that of the last iteration last.
-    faces: Vec<u32>,
-    returns: u32,
-    /// The face that it stays with.
-    pub held: Option<u32>,
 }
 
 /// A point that stays with a face until the step ends.
@@ -244,37 +231,4 @@ impl Search {
         self.faces
             .closest(target, &question, &mut self.kept[slot], &mut self.scratch)
     }
-}
-
-impl Way {
-    /// The first of its faces that are closest, by their distances.
-    fn closest(&self, measure: impl Fn(u32) -> f64) -> Option<u32> {
-        let faces = self.faces.iter().map(|&item| (item, measure(item)));
-        let closest = faces.min_by(|a, b| a.1.total_cmp(&b.1));
-        closest.map(|(item, _)| item)
-    }
-
-    /// Goes on to a face.
-    pub fn goes(&mut self, item: u32) {
-        if self.faces.last() == Some(&item) {
-            return;
-        }
-        if let Some(before) = self.faces.iter().position(|&face| face == item) {
-            self.faces.remove(before);
-            self.returns += 1;
-            self.held = (self.returns >= RETURNS).then_some(item);
-        }
-        self.faces.push(item);
-    }
-}
-
-/// Whether a point is so near to its face that it may go to and fro between that and another one.
-pub(crate) fn is_between(places: &Places, foot: &Projection, face: &Face) -> bool {
-    foot.gap.abs() < NEAR * diagonal(places, face)
-}
-
-/// Diagonal of the box of a face, m.
-fn diagonal(places: &Places, face: &Face) -> f64 {
-    let bounds = hull(places, face);
-    squared(&bounds.min, &bounds.max).sqrt()
 }

@@ -19,9 +19,9 @@ use carom_contact::{Pairing, Search};
 use carom_nonsmooth::Compliance;
 use serde::{Deserialize, Serialize};
 
+use crate::ending::{GAIN, TOLERANCE, rounding, speed};
 use crate::error::Error;
 use crate::model::{ModelZone, Zoned};
-use crate::passes::{GAIN, TOLERANCE, rounding, speed};
 use crate::places::Places;
 use carom_dynamics::ContactReport;
 use carom_dynamics::Driver;

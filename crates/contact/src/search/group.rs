@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::Way;
 use super::faces::Scratch;
 use super::kept::Kept;
+use super::way::Way;
 
 /// A block of the points that rest.
 #[derive(Debug, Default)]
