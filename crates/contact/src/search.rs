@@ -11,7 +11,7 @@
 use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
-pub(crate) use self::foot::{faces_point, foot_on, hull, spread};
+pub(crate) use self::foot::{faces_point, foot_on, spread};
 use self::group::Group;
 use self::guess::Guesses;
 use self::kept::Kept;
