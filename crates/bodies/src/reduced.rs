@@ -41,6 +41,8 @@ pub struct Reduction {
     pub translated: [f64; 3],
     /// Whether supports hold nodes that are not retained.
     pub is_grounded: bool,
+    /// What supports hold of nodes that are not retained, by node of the mesh.
+    pub held: Vec<(u32, Kind)>,
     /// Along which axes nothing holds the full body: K r = 0 of a translation r, beside rounding.
     pub is_free: [bool; 3],
     /// Whether the retained unknowns have no mass.
@@ -212,6 +214,16 @@ impl Reduced {
     /// Name as in the case file.
     pub fn name(&self) -> &str {
         self.data.full.name()
+    }
+
+    /// Retained nodes, and the node of the amplitudes.
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+
+    /// Its unknowns in the system.
+    pub fn unknowns(&self) -> &[u32] {
+        &self.unknowns
     }
 
     /// Cells of the mesh.

@@ -9,6 +9,7 @@ use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
 use carom_dynamics::{ModelLink, System, step_count};
 use carom_zones::{LinkKind, ModelZone, Zoned};
 
+use crate::accelerations::accelerations;
 use crate::build::Built;
 
 /// A line of `carom check`: what, and how much.
@@ -361,7 +362,7 @@ pub(crate) struct Approach {
     points: usize,
 }
 
-/// `accelerations`: see [`accelerations`]; `u`: displacement, m.
+/// `accelerations`: see [`accelerations`](crate::accelerations::accelerations); `u`: displacement, m.
 pub(crate) fn approach(
     system: &System,
     accelerations: &[f64],
@@ -420,34 +421,6 @@ fn first_closing(gap: f64, speed: f64, pull: f64) -> f64 {
         // no root: they part, or turn before they meet
         false => f64::INFINITY,
     }
-}
-
-/// Mean acceleration of each body under the dead loads, by unknown, m/s²; zero in directions in which a support holds it, and
-/// before the end of a static stage, in which loads make no motion.
-pub(crate) fn accelerations(system: &System) -> Vec<f64> {
-    let mut accelerations = vec![0.0; system.unknowns()];
-    if system.static_steps() > 0 {
-        return accelerations;
-    }
-    for body in &system.body_masses {
-        let mass: f64 = body.iter().map(|(_, mass)| mass).sum();
-        for i in 0..system.dim {
-            let unknown = |node: u32| system.unknowns.first(node) + i;
-            let held = body.iter().any(|&(node, _)| system.fixed[unknown(node)]);
-            // radial forces move no ring as a whole
-            if held || system.axisymmetric && i == 0 {
-                continue;
-            }
-            let force: f64 = body
-                .iter()
-                .map(|&(node, _)| system.load[unknown(node)])
-                .sum();
-            for &(node, _) in body {
-                accelerations[unknown(node)] = force / mass;
-            }
-        }
-    }
-    accelerations
 }
 
 fn contact_facts(built: &Built, accelerations: &[f64], contact: usize) -> String {

@@ -6,6 +6,7 @@
 
 pub mod schema;
 
+mod accelerations;
 mod build;
 mod compare;
 mod convergence;

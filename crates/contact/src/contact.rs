@@ -77,7 +77,8 @@ impl Contact {
         match &self.target {
             Target::Rigid(_) => Vec::new(),
             Target::Surface(faces) => {
-                search.held(places, faces, |point| self.points[point].place(places))
+                let of = (places, self.sight.is_some());
+                search.held(of, faces, |point| self.points[point].place(places))
             }
         }
     }

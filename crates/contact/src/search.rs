@@ -11,11 +11,13 @@
 use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
-pub(crate) use self::foot::{faces_point, foot_on, hull, spread};
+pub(crate) use self::foot::{faces_point, foot_on, spread};
 use self::group::Group;
 use self::guess::Guesses;
-use self::kept::{Kept, squared};
-use crate::rest::Rest;
+use self::kept::Kept;
+use self::way::diagonal;
+pub(crate) use self::way::{Way, is_between};
+use crate::rest::{BLOCK, Rest};
 use crate::sight::View;
 use crate::{Places, Point, Sight};
 
@@ -25,12 +27,7 @@ mod foot;
 pub(crate) mod group;
 pub(crate) mod guess;
 pub(crate) mod kept;
-
-/// Returns of a point, within one step, to a face that it has left in it, after which it stays with that face.
-const RETURNS: u32 = 2;
-
-/// Gap beyond which a point between two faces is left alone, over the diagonal of the face.
-const NEAR: f64 = 0.1;
+mod way;
 
 /// Memory of the search of one contact, renewed at each pairing. What it holds does not matter to results, but for the points
 /// that [`Search::begin_step`] lets it hold.
@@ -56,23 +53,13 @@ pub struct Search {
     rested: Option<(f64, [f64; 3])>,
 }
 
-/// The way of a point over the faces in the iterations of a step.
-#[derive(Clone, Debug, Default)]
-struct Way {
-    /// The faces, each once, that of the last iteration last.
-    faces: Vec<u32>,
-    returns: u32,
-    /// The face that it stays with.
-    held: Option<u32>,
-}
-
 /// A point that stays with a face until the step ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Held {
     /// Its place in the contact.
     pub point: usize,
-    /// Gap to the plane of the face, or to the point of its rim where the point is beyond it, less that to the closest face,
-    /// over the diagonal of the face.
+    /// Gap to the plane of the face, or to the point of its rim where the point is beyond it, less that to the closest face, of
+    /// surfaces with a sight to the closest of those that it has gone over, over the diagonal of the face.
     pub error: f64,
 }
 
@@ -93,8 +80,6 @@ impl Search {
         faces: &[Face],
         (travelled, shift): (f64, [f64; 3]),
     ) {
-        self.watches = false;
-        self.ways.clear();
         if let Some((before, from)) = self.rested {
             let shift = [0, 1, 2].map(|i| shift[i] - from[i]);
             if self.faces.has_moved(faces.len(), travelled - before, shift) {
@@ -146,10 +131,24 @@ impl Search {
 
     /// Begins a step of several pairings. In a fold between two faces whose normals push a point each towards the other it
     /// would go to and fro for ever: a point near its face that comes back a second time stays with the face, also where
-    /// its foot is beyond the rim, until the next call. Surfaces with a sight are left alone.
+    /// its foot is beyond the rim, until the next call.
     pub fn begin_step(&mut self) {
         self.watches = true;
         self.ways.clear();
+        self.groups.iter_mut().for_each(|group| group.ways.clear());
+    }
+
+    /// Ends the step of several pairings.
+    pub(crate) fn forget_ways(&mut self) {
+        if self.watches {
+            self.begin_step();
+            self.watches = false;
+        }
+    }
+
+    /// Whether ways over the faces are looked at.
+    pub(crate) fn watches(&self) -> bool {
+        self.watches
     }
 
     /// The closest point of a surface, if the point faces it; on the face that holds it, if one does.
@@ -165,12 +164,11 @@ impl Search {
             self.next += 1;
             return Some(foot_on(places, faces, held, x));
         }
-        let watched = self.watches && view.is_none();
         let found = self
             .closest((places, faces), view, x, f64::INFINITY)
             .filter(|(foot, face)| faces_point(foot, face));
-        if let (true, Some((foot, face)), Some(item)) = (watched, &found, self.kept[slot].face)
-            && foot.gap.abs() < NEAR * diagonal(places, face)
+        if let (true, Some((foot, face)), Some(item)) = (self.watches, &found, self.kept[slot].face)
+            && is_between(places, foot, face)
         {
             if self.ways.len() <= slot {
                 self.ways.resize(slot + 1, Way::default());
@@ -180,20 +178,29 @@ impl Search {
         found
     }
 
-    /// The points that stay with a face, and how far off they are in this configuration.
+    /// The points that stay with a face, and how far off they are in this configuration. `sees`: whether the surface has a sight.
     pub(crate) fn held(
         &self,
-        places: &Places,
+        (places, sees): (&Places, bool),
         faces: &[Face],
         place: impl Fn(usize) -> [f64; 3],
     ) -> Vec<Held> {
-        let held = self.ways.iter().enumerate();
+        let of_groups = self.groups.iter().enumerate().flat_map(|(k, group)| {
+            let ways = group.ways.iter().enumerate();
+            ways.map(move |(slot, way)| (k * BLOCK + slot, way))
+        });
+        let held = self.ways.iter().enumerate().chain(of_groups);
         let of = |(point, way): (usize, &Way)| {
+            let item = way.held?;
             let x = place(point);
-            let (foot, face) = foot_on(places, faces, way.held?, &x);
-            let measure = |item| foot_on(places, faces, item, &x).0.distance;
-            let closest = self.faces.nearest(&x, 0.0, measure)?;
-            let off = foot.gap - foot_on(places, faces, closest, &x).0.gap;
+            let (foot, face) = foot_on(places, faces, item, &x);
+            let measure = |item: u32| foot_on(places, faces, item, &x).0.distance;
+            let closest = match sees {
+                // what is closest may be out of view
+                true => way.closest(measure),
+                false => self.faces.nearest(&x, 0.0, measure),
+            };
+            let off = foot.gap - foot_on(places, faces, closest?, &x).0.gap;
             Some(Held {
                 point,
                 error: off / diagonal(places, face),
@@ -224,24 +231,4 @@ impl Search {
         self.faces
             .closest(target, &question, &mut self.kept[slot], &mut self.scratch)
     }
-}
-
-impl Way {
-    fn goes(&mut self, item: u32) {
-        if self.faces.last() == Some(&item) {
-            return;
-        }
-        if let Some(before) = self.faces.iter().position(|&face| face == item) {
-            self.faces.remove(before);
-            self.returns += 1;
-            self.held = (self.returns >= RETURNS).then_some(item);
-        }
-        self.faces.push(item);
-    }
-}
-
-/// Diagonal of the box of a face, m.
-fn diagonal(places: &Places, face: &Face) -> f64 {
-    let bounds = hull(places, face);
-    squared(&bounds.min, &bounds.max).sqrt()
 }

@@ -103,7 +103,7 @@ pub struct Control {
     pub dt: f64,
     /// Size of the last step, s.
     pub taken: f64,
-    /// Smallest and largest step so far, s; zero before the first.
+    /// Smallest and largest step so far, s, of the dynamics once a static stage is over; zero before the first.
     pub range: [f64; 2],
     /// Attempts dropped because a contact closed within the step.
     pub cut: u64,

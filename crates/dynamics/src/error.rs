@@ -228,6 +228,15 @@ pub enum Error {
         /// The motion.
         motion: String,
     },
+    /// A static step without equilibrium, near which the stiffness is not positive definite.
+    #[error(
+        "{cause}; the stiffness near it is not positive definite, as beyond a limit point or a bifurcation, from where bodies snap to another \
+         equilibrium: take more iterations (passes), or end the static stage before it and go on with the dynamics"
+    )]
+    Unstable {
+        /// The error of the last attempt.
+        cause: Box<Error>,
+    },
     /// A step failed on one of several ranks, and so on all.
     #[error("rank {rank}: {cause}")]
     OnRank {

@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 /// Most points of a curve.
 pub const MOST_CURVE_POINTS: usize = 16;
 
-/// Force over penetration of a whole contact, linear in pieces from (0, 0) through increasing points; beyond the last
-/// point the last piece goes on. A fixed array, so that laws stay plain values.
+/// Force over penetration of a whole contact, linear in pieces from (0, 0) through points of increasing penetration whose forces
+/// do not fall, the first above zero; beyond the last point the last piece goes on. A fixed array, so that laws stay plain values.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
 pub struct Curve {
@@ -35,9 +35,9 @@ pub enum CurveError {
         /// That of the first piece, N/m.
         first: f64,
     },
-    /// A point that is not above the one before it in penetration and in force, the first above (0, 0).
+    /// A point that is not beyond the one before it in penetration, or below it in force; the first one not above (0, 0).
     #[error(
-        "point {point} of the curve, {found:?} m and N, is not above {before:?}: penetration and force must increase"
+        "point {point} of the curve, {found:?} m and N, does not follow {before:?}: penetrations must increase, and forces not fall, from more than zero on"
     )]
     NotIncreasing {
         /// Its number, from 1.
@@ -53,7 +53,7 @@ impl Curve {
     /// A curve through (0, 0) and these points: penetration in m, force of the whole contact in N.
     ///
     /// # Errors
-    /// No point or more than [`MOST_CURVE_POINTS`]; points that do not increase.
+    /// No point or more than [`MOST_CURVE_POINTS`]; penetrations that do not increase, forces that fall, a first one of zero.
     pub fn new(points: &[[f64; 2]]) -> Result<Curve, CurveError> {
         let count = points.len();
         if count == 0 || count > MOST_CURVE_POINTS {
@@ -65,7 +65,12 @@ impl Curve {
         };
         let mut before = [0.0; 2];
         for (k, &found) in points.iter().enumerate() {
-            if !(found[0] > before[0] && found[1] > before[1]) {
+            // along a plateau the force is what it is whatever the penetration; the first piece says how stiff the stop is
+            let rises = match k {
+                0 => found[1] > 0.0,
+                _ => found[1] >= before[1],
+            };
+            if !(found[0] > before[0] && rises) {
                 return Err(CurveError::NotIncreasing {
                     point: k + 1,
                     found,
@@ -195,13 +200,27 @@ mod tests {
         let many: Vec<[f64; 2]> = (1..=17).map(|k| [k as f64; 2]).collect();
         assert_eq!(Curve::new(&many), Err(CurveError::Count { points: 17 }));
         assert!(Curve::new(&many[..16]).is_ok());
-        for bad in [[2.0, 10.0], [1.0, 11.0], [f64::NAN, 11.0]] {
+        for bad in [[2.0, 9.999], [1.0, 11.0], [f64::NAN, 11.0], [2.0, f64::NAN]] {
             let points = [[1.0, 10.0], bad];
             assert!(matches!(
                 Curve::new(&points),
                 Err(CurveError::NotIncreasing { point: 2, .. })
             ));
         }
+        assert!(matches!(
+            Curve::new(&[[1.0, 0.0], [2.0, 1.0]]),
+            Err(CurveError::NotIncreasing { point: 1, .. })
+        ));
+    }
+
+    #[test]
+    fn a_plateau_has_one_force_and_goes_on() {
+        let curve = Curve::new(&[[1.0, 10.0], [3.0, 10.0]]).unwrap();
+        for penetration in [1.0, 2.0, 3.0, 30.0] {
+            assert_eq!(curve.force(penetration), 10.0);
+            assert_eq!(curve.energy(penetration), 5.0 + 10.0 * (penetration - 1.0));
+        }
+        assert_eq!(curve.first_steeper(), None);
     }
 
     #[test]

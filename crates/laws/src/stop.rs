@@ -107,8 +107,9 @@ pub struct CurvePoint {
 pub struct GivenStop {
     /// Clearance that is not in the mesh: the stop acts where the gap is below minus this value. Default: 0.
     pub clearance: Option<Clearance>,
-    /// Points of force over penetration, both increasing. The curve begins at (0, 0), which is not written; it is
-    /// linear between the points and continues beyond the last one. One point gives a spring.
+    /// Points of force over penetration; penetrations increase, forces do not fall. The curve begins at (0, 0), which is not
+    /// written; it is linear between the points and continues beyond the last one. One point gives a spring, two of one force a
+    /// plateau.
     #[schemars(extend("minItems" = 1, "maxItems" = MOST_CURVE_POINTS))]
     pub curve: Vec<CurvePoint>,
     /// Unloading of the stop.
@@ -125,7 +126,7 @@ impl GivenStop {
     /// The law with its defaults.
     ///
     /// # Errors
-    /// A curve that does not increase, or that is too steep.
+    /// A curve that falls, or that is too steep.
     pub fn law(&self, _defaults: &Defaults) -> Result<Stop, CurveError> {
         let points = self
             .curve
@@ -294,6 +295,42 @@ mod tests {
                 let (force, gap) = solve(&law, &local, start, free, d);
                 let expected = law.curve.force(-gap - law.clearance);
                 assert!((force - expected).abs() < 1e-9 * (1.0 + expected));
+            }
+        }
+    }
+
+    #[test]
+    fn a_plateau_is_found_from_every_start_and_left_along_the_initial_stiffness() {
+        let law = Stop {
+            curve: Curve::new(&[[1.0, 10.0], [3.0, 10.0], [4.0, 12.0]]).unwrap(),
+            crush: Crush::Permanent,
+            ..stop()
+        };
+        for crush in [0.0, 1.0, 2.0, 3.5] {
+            let local = Local {
+                share: 1.0,
+                crush,
+                ..Local::default()
+            };
+            for k in 0..300 {
+                let free = -0.02 * f64::from(k);
+                for start in [
+                    Status::Open,
+                    Status::Piece(0),
+                    Status::Piece(1),
+                    Status::Piece(2),
+                ] {
+                    let (force, gap) = solve(&law, &local, start, free, 0.05);
+                    let penetration = -gap - law.clearance;
+                    let expected = match penetration < crush {
+                        true => (law.curve.force(crush) + 10.0 * (penetration - crush)).max(0.0),
+                        false => law.curve.force(penetration),
+                    };
+                    assert!(
+                        (force - expected).abs() < 1e-12 * (1.0 + expected),
+                        "{crush} {free}"
+                    );
+                }
             }
         }
     }

@@ -48,6 +48,6 @@ pub use results::{
     BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Piece, Pieces, Probe, Reference,
     Results, Settings, Spectrum, Zoning, model_picture, qualities, watched,
 };
-pub use statistics::{Allowable, Level, Statistics};
+pub use statistics::{Allowable, Level, Statistics, takes_energy};
 pub use summary::Summary;
 pub use verdict::{Grade, Verdict};

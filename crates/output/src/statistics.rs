@@ -1,6 +1,8 @@
 //! Statistics of impacts: what the impacts of a contact, or of all contacts of a level, come to over a run.
 
-use carom_dynamics::Impact;
+use carom_bodies::Body;
+use carom_contact::Law;
+use carom_dynamics::{Impact, System};
 use serde::{Deserialize, Serialize};
 
 /// Classes of a histogram.
@@ -170,17 +172,33 @@ impl Histogram {
     }
 }
 
+/// Whether a contact takes up energy, by its law: the exact laws take none of bodies that deform, whose loss where they touch is that of mesh
+/// and step. Between bodies that cannot deform the velocity law is an impact without restitution.
+pub fn takes_energy(system: &System, contact: usize) -> bool {
+    let is_stiff = |body: &Body| body.as_rigid().is_some() || body.as_discrete().is_some();
+    let mut bodies = system.touching[contact].iter();
+    match &system.contacts[contact].law {
+        Law::Displacement(_) => false,
+        Law::Velocity(_) => bodies.all(|body| is_stiff(&system.bodies[*body])),
+        Law::Restitution(law) => law.coefficient < 1.0,
+        Law::Damped(_) | Law::Compliance(_) | Law::Penalty(_) | Law::Stop(_) => true,
+    }
+}
+
 impl Level {
-    /// The level of these contacts. `impacts`: theirs.
+    /// The level of these contacts. `impacts`: theirs; `takes`: whether a contact takes up energy ([`takes_energy`]).
     pub fn of<'a>(
         contacts: &[usize],
         impacts: &[&Impact],
         name: impl Fn(usize) -> &'a str + Copy,
         (friction_loss, allowable): (f64, Allowable),
+        takes: impl Fn(usize) -> bool,
     ) -> Level {
-        let margin = |allowed: Option<f64>, value: fn(&Impact) -> f64| {
+        let taking = impacts.iter().filter(|i| takes(i.contact as usize));
+        let taking: Vec<&Impact> = taking.copied().collect();
+        let margin = |allowed: Option<f64>, judged: &[&Impact], value: fn(&Impact) -> f64| {
             let order = |a: &&&Impact, b: &&&Impact| value(a).total_cmp(&value(b));
-            let governing = impacts.iter().filter(|i| value(i) > 0.0).max_by(order);
+            let governing = judged.iter().filter(|i| value(i) > 0.0).max_by(order);
             let found = governing.map_or(0.0, |impact| value(impact));
             Some(Margin {
                 allowable: allowed?,
@@ -193,8 +211,8 @@ impl Level {
         Level {
             contacts: contacts.iter().map(|k| name(*k).to_owned()).collect(),
             statistics: Statistics::of(impacts, name, friction_loss),
-            force_margin: margin(allowable.force, |i| i.peak_force),
-            energy_margin: margin(allowable.energy, |i| i.energy_taken),
+            force_margin: margin(allowable.force, impacts, |i| i.peak_force),
+            energy_margin: margin(allowable.energy, &taking, |i| i.energy_taken),
         }
     }
 }
@@ -228,7 +246,7 @@ mod tests {
             force: Some(5.0),
             energy: Some(0.4),
         };
-        let level = Level::of(&[0, 1], &impacts, name, (3.0, allowable));
+        let level = Level::of(&[0, 1], &impacts, name, (3.0, allowable), |_| true);
         let found = &level.statistics;
         assert_eq!(
             (found.count, found.peak_force, found.energy_taken),
@@ -245,6 +263,13 @@ mod tests {
         let energy = level.energy_margin.unwrap();
         assert!((energy.margin.unwrap() + 0.2).abs() < 1e-15);
         assert_eq!(energy.governing.unwrap().0, "a");
+        // of contacts that take up no energy there is no margin of it
+        let judged = |takes: fn(usize) -> bool| {
+            let level = Level::of(&[0, 1], &impacts, name, (3.0, allowable), takes);
+            level.energy_margin.unwrap()
+        };
+        assert_eq!(judged(|k| k == 1).found, 0.1);
+        assert_eq!(judged(|_| false).margin, None);
     }
 
     #[test]
@@ -253,7 +278,7 @@ mod tests {
             force: Some(5.0),
             energy: None,
         };
-        let level = Level::of(&[0], &[], |_| "a", (0.0, allowable));
+        let level = Level::of(&[0], &[], |_| "a", (0.0, allowable), |_| true);
         assert_eq!(level.statistics.count, 0);
         assert_eq!(level.force_margin.unwrap().margin, None);
         assert_eq!(level.energy_margin, None);

@@ -114,6 +114,14 @@ fn reduction(
             .sum::<f64>()
             / total
     });
+    let held = (0..unknowns).filter(|&unknown| full.fixed[unknown]);
+    let held = held.map(|unknown| {
+        let node = system.unknowns.node(unknown);
+        (
+            system.mesh_node[node as usize],
+            system.unknowns.kind(unknown),
+        )
+    });
     Ok(Reduction {
         rows: rows.collect(),
         full: own.map_err(carom_system::Error::from)?,
@@ -129,6 +137,7 @@ fn reduction(
         inertia,
         translated: [0, 1, 2].map(|axis| mass_of(&full.matrices.mass, &full.translation(axis))),
         is_grounded,
+        held: held.collect(),
         is_free,
         is_massless: keep.massless,
         masses: masses

@@ -35,7 +35,7 @@ impl System {
     /// # Errors
     /// A step that is not positive; a body that cannot be built; a scheme that cannot take the mass, the step or the
     /// contact law.
-    pub fn new(model: Model) -> Result<Arc<System>, Error> {
+    pub fn new(mut model: Model) -> Result<Arc<System>, Error> {
         if !(model.dt > 0.0 && model.dt.is_finite()) {
             return Err(Error::Step { dt: model.dt });
         }
@@ -47,7 +47,17 @@ impl System {
                 largest: model.dt,
             });
         }
-        let (system, bodies, contacts) = System::assemble(model)?;
+        let waiting = std::mem::take(&mut model.nonlinear.waiting);
+        let staged = match waiting.is_empty() || model.nonlinear.preload.is_none() {
+            true => None,
+            false => Some(model.with_held(waiting)),
+        };
+        let (mut system, bodies, contacts) = System::assemble(model)?;
+        if let Some(staged) = staged {
+            let (mut staged, ..) = System::assemble(staged)?;
+            staged.mesh = Arc::clone(&system.mesh);
+            system.staged = Some(Arc::new(staged));
+        }
         system.check_overlaps(&contacts)?;
         system.check_massless(&contacts)?;
         for zone in 0..system.schemes.len() {
@@ -303,6 +313,7 @@ impl System {
             initial_frames,
             initial_displacement,
             initial_velocity,
+            staged: None,
             mesh: Arc::new(model.mesh),
         };
         system.assemblies = Assemblies::of(&system);

@@ -189,6 +189,17 @@ impl ModelConstraint {
 }
 
 impl Model {
+    /// The same with some nodes held.
+    pub(crate) fn with_held(&self, nodes: Vec<u32>) -> Model {
+        let mut model = self.clone();
+        model.supports.push(Support {
+            nodes,
+            fix: [true; 3],
+            fix_rotations: [true; 3],
+        });
+        model
+    }
+
     /// The length that absolute tolerances are fractions of, m: the size of the mesh. Of a mesh without extent, such as a single
     /// point mass, the largest of initial displacements and gaps, and of the ways of the first step; 1 where all are zero.
     pub fn length(&self) -> f64 {

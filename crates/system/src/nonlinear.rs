@@ -87,6 +87,8 @@ pub struct Nonlinear {
     pub damping: Vec<Damping>,
     /// The static stage.
     pub preload: Option<Preload>,
+    /// Nodes of the mesh that are held over the static stage: their bodies wait for the dynamics.
+    pub waiting: Vec<u32>,
     /// How steps are solved.
     pub iteration: Iteration,
 }

@@ -290,6 +290,7 @@ impl System {
             initial_frames: Vec::new(),
             initial_displacement: to.pick(&self.initial_displacement),
             initial_velocity: to.pick(&self.initial_velocity),
+            staged: None,
             unknowns,
         }
     }

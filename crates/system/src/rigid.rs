@@ -388,6 +388,17 @@ impl System {
         }
     }
 
+    /// Whether all unknowns of a node are held over the static stage.
+    fn waits(&self, node: u32) -> bool {
+        let staged = self.staged.as_ref();
+        staged.is_some_and(|staged| {
+            staged
+                .unknowns
+                .of(node)
+                .all(|unknown| staged.fixed[unknown])
+        })
+    }
+
     /// Refuses what rigid bodies do not take.
     fn check_rigid(&self) -> Result<(), Error> {
         let Some(body) = self.bodies.iter().find_map(Body::as_rigid) else {
@@ -408,8 +419,11 @@ impl System {
             let what = Refused::Rigid(body.name().to_owned());
             Err(Error::Nonlinear { what, why })
         };
-        if self.nonlinear.preload.is_some() {
-            return refuse("a static stage has no rotations; begin with the dynamics");
+        let mut all = self.bodies.iter().filter_map(Body::as_rigid);
+        if self.nonlinear.preload.is_some() && !all.all(|body| self.waits(body.node())) {
+            return refuse(
+                "a static stage has no rotations; let the body wait for the dynamics (hold), or begin with these",
+            );
         }
         if self.schemes.iter().any(|scheme| scheme.get().is_explicit()) {
             return refuse(

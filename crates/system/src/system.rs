@@ -129,6 +129,8 @@ pub struct System {
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
     pub initial_velocity: Vec<f64>,
+    /// The same in its static stage, where bodies that wait for the dynamics are held; none without such bodies.
+    pub staged: Option<Arc<System>>,
 }
 
 impl System {

@@ -19,6 +19,7 @@ use carom_contact::{Pairing, Search};
 use carom_nonsmooth::Compliance;
 use serde::{Deserialize, Serialize};
 
+use crate::ending::{GAIN, TOLERANCE, rounding, speed};
 use crate::error::Error;
 use crate::model::{ModelZone, Zoned};
 use crate::places::Places;
@@ -30,9 +31,6 @@ use carom_dynamics::state::{InterfaceState, empty_state};
 use carom_nonsmooth::interface::{Candidate, Interface};
 use carom_schemes::Scheme;
 use carom_system::{LinkRow, System, on};
-
-/// Change of the forces over the largest at which the passes end.
-const TOLERANCE: f64 = 1e-12;
 
 /// What contacts between zones go on from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -72,6 +70,10 @@ pub(crate) struct Between {
     pub(crate) responses: [Vec<f64>; 2],
     pub(crate) matrix: Vec<f64>,
     pub(crate) matrix_of: Vec<bool>,
+    /// D with the own responses of points of rigid bodies a little larger; empty without such candidates.
+    pub(crate) softened: Vec<f64>,
+    /// Which unknowns are those of rigid bodies, and the part by which the own response of their points grows.
+    pub(crate) rigid: (Vec<bool>, f64),
     pub(crate) of: Vec<(Vec<u32>, Vec<f64>)>,
     pub(crate) sizes: Vec<f64>,
     pub(crate) version: u64,
@@ -148,6 +150,8 @@ impl Between {
             responses: Default::default(),
             matrix: Vec::new(),
             matrix_of: Vec::new(),
+            softened: Vec::new(),
+            rigid: system.rigid_points(),
             of: Vec::new(),
             sizes: Vec::new(),
             version: 0,
@@ -225,6 +229,7 @@ impl Between {
         let force = |&point: &u32| self.state.interface.force[point as usize];
         self.forces = self.candidates.iter().map(force).collect();
         self.lasting = self.forces.iter().map(|force| *force != 0.0).collect();
+        self.change = f64::INFINITY;
         self.rows.iter_mut().for_each(Vec::clear);
         for (k, &point) in self.candidates.iter().enumerate() {
             let (dofs, coefficients) = self.pairing.rows.row(point as usize);
@@ -275,11 +280,15 @@ impl Between {
         }
     }
 
-    /// Whether the forces obey the laws at the rates found; corrects them if not. `dt`: the outer step, s.
+    /// Whether the forces obey the laws at the rates found, or would after a change by rounding; corrects them if not. `dt`: the outer step, s.
     ///
     /// # Errors
     /// A contact problem without solution.
-    pub(crate) fn corrected(&mut self, (step, dt): (u64, f64)) -> Result<bool, Error> {
+    pub(crate) fn corrected(
+        &mut self,
+        (step, dt): (u64, f64),
+        drivers: &[Driver],
+    ) -> Result<bool, Error> {
         let n = self.candidates.len();
         if n == 0 {
             return Ok(true);
@@ -319,11 +328,12 @@ impl Between {
                 instant: [1.0; 2],
             });
         }
-        let solved = self.interface.solve(
-            &self.data,
-            (Compliance::Dense(&self.matrix), self.version),
-            [0.0, 1.0],
-        );
+        let matrix = match self.softened.is_empty() {
+            true => &self.matrix,
+            false => &self.softened,
+        };
+        let problem = (Compliance::Dense(matrix), self.version);
+        let solved = self.interface.solve(&self.data, problem, [0.0, 1.0]);
         if let Err(failure) = solved {
             let contact = system.point(self.candidates[0] as usize).0.name.clone();
             return Err(Error::Between {
@@ -335,12 +345,29 @@ impl Between {
         let largest = |values: &[f64]| values.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         let changes = self.forces.iter().zip(&self.interface.forces);
         let change = changes.fold(0.0_f64, |m, (old, new)| m.max((old - new).abs()));
-        let held = change <= TOLERANCE * largest(&self.interface.forces);
+        let gains = change < GAIN * self.change;
         self.change = change;
+        let held = change <= TOLERANCE * largest(&self.interface.forces)
+            || !gains && (change <= rounding(drivers) || self.keeps_rates(speed(drivers)));
         if !held {
             self.forces.clone_from(&self.interface.forces);
         }
         Ok(held)
+    }
+
+    /// Whether the forces just found leave the rates what they are, beside the rounding of velocities up to this `speed` (m/s): those of
+    /// points of rigid bodies are not unique, and those that a stiff body needs to change its rate by rounding may be large.
+    fn keeps_rates(&self, speed: f64) -> bool {
+        let n = self.candidates.len();
+        let changes = self.interface.forces.iter().zip(&self.forces);
+        let changes: Vec<f64> = changes.map(|(new, old)| new - old).collect();
+        self.candidates.iter().enumerate().all(|(i, &point)| {
+            let of_changes = self.matrix[i * n..(i + 1) * n].iter().zip(&changes);
+            let rate: f64 = of_changes.map(|(d, change)| d * change).sum();
+            let (_, coefficients) = self.pairing.rows.row(point as usize);
+            let size: f64 = coefficients.iter().map(|n| n.abs()).sum();
+            rate.abs() <= TOLERANCE * size * speed
+        })
     }
 
     /// The error of forces that still change after all passes.

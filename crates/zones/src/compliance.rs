@@ -69,7 +69,31 @@ impl Between {
                 });
             }
         }
+        self.soften();
         self.matrix_of.clone_from(&self.lasting);
         self.version += 1;
+    }
+
+    /// D with the own responses of points of rigid bodies a little larger: more than three such points on a plane have dependent rows, and
+    /// share their force ([`System::rigid_points`](carom_system::System::rigid_points)).
+    fn soften(&mut self) {
+        let (rigid, part) = &self.rigid;
+        let rows = &self.pairing.rows;
+        let is_rigid = |point: &u32| {
+            let (unknowns, _) = rows.row(*point as usize);
+            let mut unknowns = unknowns.iter();
+            unknowns.any(|unknown| rigid.get(*unknown as usize) == Some(&true))
+        };
+        self.softened.clear();
+        if !self.candidates.iter().any(is_rigid) {
+            return;
+        }
+        self.softened.extend_from_slice(&self.matrix);
+        let n = self.candidates.len();
+        for (i, point) in self.candidates.iter().enumerate() {
+            if is_rigid(point) {
+                self.softened[i * n + i] *= 1.0 + part;
+            }
+        }
     }
 }

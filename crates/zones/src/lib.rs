@@ -12,6 +12,7 @@ mod between;
 mod compliance;
 mod control;
 mod discrete;
+mod ending;
 mod error;
 mod model;
 mod moves;

@@ -199,6 +199,7 @@ impl Zoned {
             turns: Vec::new(),
             damping: zone.bodies.iter().map(damping).collect(),
             preload: None,
+            waiting: Vec::new(),
             iteration,
         }
     }

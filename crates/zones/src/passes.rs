@@ -2,16 +2,11 @@
 
 use std::ops::Range;
 
+use crate::ending::{GAIN, TOLERANCE, largest, rounding, speed};
 use crate::error::Error;
 use crate::zones::{Sample, Zones};
 use carom_dynamics::Driver;
 use carom_system::LinkRow;
-
-/// Defect of a row at which it holds, as a part of the largest velocity.
-const TOLERANCE: f64 = 1e-12;
-
-/// Factor of the defect in a pass that gains.
-const GAIN: f64 = 0.5;
 
 /// Most passes over an outer step.
 pub(crate) const MOST_PASSES: usize = 30;
@@ -29,7 +24,7 @@ impl Zones {
     /// Whether the rows hold, or would after a change of the multipliers by rounding; corrects the multipliers `which`
     /// (0 pointwise, 1 of the outer step) if not.
     pub(crate) fn corrected(&mut self, which: usize) -> Result<bool, Error> {
-        let speed = self.speed();
+        let speed = speed(&self.drivers);
         let rows = self.defect.iter().zip(&self.norms).enumerate();
         let (worst, row) = rows.fold((0.0, 0), |worst: (f64, usize), (row, (d, n))| {
             match d.abs() / n {
@@ -54,7 +49,9 @@ impl Zones {
         // at rest all velocities are rounding; then the forces tell what is small
         let forces = largest(old).max(largest(target));
         let change = largest(&self.defect);
-        if change <= TOLERANCE * forces || !gains && self.force_of_change() <= self.rounding() {
+        if change <= TOLERANCE * forces
+            || !gains && self.force_of_change() <= rounding(&self.drivers)
+        {
             return Ok(true);
         }
         self.moves.next(&mut self.defect);
@@ -82,21 +79,6 @@ impl Zones {
         changes.fold(0.0, |most, (l, norm)| f64::max(most, 0.5 * norm * l.abs()))
     }
 
-    /// What rounding and the iterations leave in the forces of the zones, N. Passes end there once they gain no more: stiff elements turn the
-    /// rounding of displacements into velocities far above that of the velocities.
-    fn rounding(&self) -> f64 {
-        let left = |driver: &Driver| driver.rounding_of_forces().max(driver.left_over());
-        self.drivers.iter().map(left).fold(0.0, f64::max)
-    }
-
-    /// Largest velocity of all zones, at the end of the step or at its start.
-    fn speed(&self) -> f64 {
-        let of = |driver: &Driver| {
-            largest(&driver.ended().motion.v).max(largest(&driver.state().motion.v))
-        };
-        self.drivers.iter().map(of).fold(0.0, f64::max)
-    }
-
     pub(crate) fn parted(&self) -> Error {
         let row = self.worst_row;
         let link = self.links.iter().find(|(_, rows)| rows.contains(&row));
@@ -113,10 +95,6 @@ impl Zones {
             },
         }
     }
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |m, v| m.max(v.abs()))
 }
 
 /// Adds the work of the links in the step of a zone just completed. Of links that turn, `now` and `last` are forces of terms.

@@ -110,7 +110,7 @@ impl Zones {
             }
             self.add_defects();
             let pressed = match &mut self.between {
-                Some(between) => between.corrected((self.step, self.dt))?,
+                Some(between) => between.corrected((self.step, self.dt), &self.drivers)?,
                 None => true,
             };
             joined = self.corrected(1)?;

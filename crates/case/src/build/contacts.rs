@@ -11,8 +11,9 @@ use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
 use super::laws::sides;
 use super::{Builder, advice};
+use crate::accelerations::accelerations;
 use crate::error::Problem;
-use crate::facts::{accelerations, approach};
+use crate::facts::approach;
 use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration, Scheme};
 
 impl Builder<'_> {

@@ -82,10 +82,15 @@ pub(super) fn no_curve(path: &str, error: &CurveError) -> Problem {
             before,
         } => Problem::new(
             format!("{path}[{}]", point - 1),
-            "the points of the curve must increase in penetration and in force",
+            "penetrations must increase along the curve, and forces must not fall",
         )
         .found(format!("{} m, {} N", found[0], found[1]))
-        .accepted([format!("more than {} m and {} N", before[0], before[1])]),
+        .accepted([format!(
+            "more than {} m, and {} {} N",
+            before[0],
+            if *point == 1 { "more than" } else { "at least" },
+            before[1]
+        )]),
     }
 }
 

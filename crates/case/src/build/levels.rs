@@ -1,7 +1,7 @@
 //! Levels: contacts that are judged together.
 
 use carom_dynamics::System;
-use carom_output::{Allowable, LevelSettings};
+use carom_output::{Allowable, LevelSettings, takes_energy};
 
 use super::Builder;
 use crate::error::Problem;
@@ -36,6 +36,9 @@ impl Builder<'_> {
                     force: allowable.force.map(|force| force.0),
                     energy: allowable.energy.map(|energy| energy.0),
                 });
+            if allowable.energy.is_some() {
+                self.takes_energy(system, name, &contacts);
+            }
             levels.push(LevelSettings {
                 name: name.to_owned(),
                 contacts,
@@ -43,5 +46,33 @@ impl Builder<'_> {
             });
         }
         levels
+    }
+
+    /// Refuses an allowable energy of contacts that take up none. A stop that has an exact law in the place of its spring, for a comparison, is told
+    /// to have no margin.
+    fn takes_energy(&mut self, system: &System, level: &str, contacts: &[usize]) {
+        let without = contacts.iter().filter(|k| !takes_energy(system, **k));
+        let without = without.map(|k| &system.contacts[*k]);
+        let (stops, others): (Vec<_>, Vec<_>) =
+            without.partition(|contact| self.case.stop.get(&contact.name).is_some());
+        if let Some(stop) = stops.first() {
+            self.warnings.push(format!(
+                "level `{level}`: stop `{}` takes up no energy with the {} law: it has no margin to the allowable one",
+                stop.name,
+                stop.law.get().name()
+            ));
+        }
+        if let Some(contact) = others.first() {
+            let message = format!(
+                "contact `{}` takes up no energy with the {} law: what bodies lose there is the error of mesh and step",
+                contact.name,
+                contact.law.get().name()
+            );
+            let problem = Problem::new(format!("level.{level}.allowable.energy"), message);
+            self.problems.push(problem.accepted([
+                "contacts with a law that takes energy up: stop, penalty, damped, compliance, restitution below 1",
+                "an allowable force alone",
+            ]));
+        }
     }
 }

@@ -250,6 +250,7 @@ impl Builder<'_> {
                 ..self.nonlinear(loads, (motions, turns))
             },
         };
+        model.nonlinear.waiting = self.waiting(&model);
         self.reduce(&mut model, &joints.links, &input.folder);
         self.damp_modes(&mut model);
         self.problems.is_empty().then_some(Modelled {

@@ -1,11 +1,13 @@
 //! Loads and motions in time, damping, a static stage, the rules of the iterations, and where they are refused.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use carom_dynamics::{
-    Damping, Driver, Iteration, Load, ModelBody, Nonlinear, Preload, Prescribed, PrescribedTurn,
-    Solver, System,
+    Damping, Driver, Iteration, Load, Model, ModelBody, Nonlinear, Preload, Prescribed,
+    PrescribedTurn, Solver, System,
 };
+use carom_mesh::ElementId;
 
 use super::Builder;
 use crate::error::Problem;
@@ -48,6 +50,39 @@ impl Builder<'_> {
             },
             ..Nonlinear::default()
         }
+    }
+
+    /// Nodes that are held over the static stage, ascending.
+    pub(super) fn waiting(&mut self, model: &Model) -> Vec<u32> {
+        let case = self.case;
+        let mut cells: Vec<ElementId> = Vec::new();
+        let bodies = case.body.iter().zip(&model.bodies);
+        for ((name, body), built) in bodies.filter(|((_, body), _)| body.hold) {
+            if body.reduction.is_some() {
+                let message = "a reduced body is not held: its modes have no place";
+                let problem = Problem::new(format!("body.{name}.hold"), message);
+                self.problems
+                    .push(problem.accepted(["a body without `reduction`"]));
+            }
+            cells.extend(&built.spec.cells);
+        }
+        // discrete elements begin with the masses, in the order of the case
+        let masses = case.mass.iter().zip(&model.discrete);
+        for (_, built) in masses.filter(|((_, mass), _)| mass.hold) {
+            cells.extend(&built.spec.cells);
+        }
+        let nodes = cells
+            .iter()
+            .flat_map(|&cell| model.mesh.element_nodes(cell));
+        let nodes: BTreeSet<u32> = nodes.copied().collect();
+        if !nodes.is_empty() && case.time.stage.is_none() {
+            let message =
+                "a body that is held waits for the end of a static stage, and the case has none";
+            let problem = Problem::new("time", message);
+            self.problems
+                .push(problem.accepted(["a static stage", "no `hold`"]));
+        }
+        nodes.into_iter().collect()
     }
 
     /// Refuses in zones what their links do not know.

@@ -1,5 +1,7 @@
 //! Contacts that penetrate at the start: refused, or told.
 
+use carom_contact::Contact;
+use carom_contact::law::Level;
 use carom_dynamics::System;
 
 use super::Builder;
@@ -43,6 +45,11 @@ impl Builder<'_> {
                 continue;
             };
             let node = system.mesh_node[deepest.node as usize];
+            if let Some(stop) = self.case.stop.get(name) {
+                let gap = stop.gap.map_or(0.0, |gap| gap.0);
+                self.compressed(contact, (gap, deepest.depth, slack));
+                continue;
+            }
             if way == Some(schema::Penetration::Keep) {
                 self.tell(name, deep.len(), (node, deepest.depth), "kept");
                 continue;
@@ -66,6 +73,35 @@ impl Builder<'_> {
                 ]);
             self.problems.push(problem);
         }
+    }
+
+    /// Tells of a stop that penetrates at the start by a depth (m) as its gap (m) asks, and refuses one that does not, or that has a law without
+    /// a force for that.
+    fn compressed(&mut self, stop: &Contact, (gap, depth, slack): (f64, f64, f64)) {
+        let name = &stop.name;
+        let has_force = stop.law.get().level() == Level::GapAndRate;
+        if has_force && depth <= slack - gap {
+            self.warnings.push(format!(
+                "stop `{name}`: its gap is negative, so that it is compressed by {depth:.4e} m at the start"
+            ));
+            return;
+        }
+        let message = match has_force {
+            true => "the end of the stop is inside the obstacle at the start",
+            false => "a stop that is compressed at the start needs a law that gives it a force",
+        };
+        let problem = Problem::new(format!("stop.{name}.gap"), message);
+        let problem = problem.found(format!("a penetration of {depth:.4e} m"));
+        self.problems.push(match has_force {
+            true => problem.accepted([
+                "a place outside of the obstacle".to_owned(),
+                format!("gap = {:.6} m (compressed at the start)", gap - depth),
+            ]),
+            false => problem.accepted([
+                format!("gap of at least -{slack:.1e} m"),
+                "the spring of the stop, without `law`".to_owned(),
+            ]),
+        });
     }
 
     /// Tells which nodes contacts have moved away from the places `before`, and refuses cells that this has spoilt.

@@ -113,7 +113,10 @@ impl Builder<'_> {
         bodies: &[ModelBody],
         systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
     ) -> Option<f64> {
-        let end = self.case.time.end.0;
+        let time = &self.case.time;
+        // the steps of a static stage are counted by themselves; a case that is all static has no others
+        let begin = time.stage.filter(|_| !time.is_static());
+        let duration = time.end.0 - begin.map_or(0.0, |stage| stage.end.0);
         let (path, size) = self.size();
         let dt = match size {
             Size::Fixed(dt) => dt,
@@ -124,17 +127,17 @@ impl Builder<'_> {
             }
             Size::Critical(fraction) => fraction * self.critical(systems)?,
         };
-        let steps = step_count(end, dt);
+        let steps = step_count(duration, dt);
         if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
             let problem = Problem::new(path, "the run would never end")
-                .found(format!("{:.3e} steps of {dt:.3e} s", end / dt));
+                .found(format!("{:.3e} steps of {dt:.3e} s", duration / dt));
             self.problems
                 .push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
             return None;
         }
         if steps == 0 {
             let problem = Problem::new("time.end", "the run ends before its first step")
-                .found(format!("{end:e} s"));
+                .found(format!("{duration:e} s"));
             self.problems
                 .push(problem.accepted([format!("at least one step of {dt:e} s")]));
             return None;

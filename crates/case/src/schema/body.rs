@@ -45,6 +45,9 @@ pub struct Body {
     pub deletion: Option<Deletion>,
     /// Initial state. After a static stage the velocity applies at the end of that stage. Default: at rest, undeformed.
     pub initial: Option<Initial>,
+    /// Whether the body waits for the dynamics: over a static stage all of it is held where it is, as by a support. Not of a reduced body.
+    #[serde(default)]
+    pub hold: bool,
 }
 
 /// A body reduced to nodes and modes. It retains the nodes of contacts, stops, links, constraints, loads and motions, those that it shares with other

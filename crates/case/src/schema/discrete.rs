@@ -32,6 +32,9 @@ pub struct PointMass {
     /// Initial state of its own node. On a group: of its nodes, in place of that of their body. Default: at rest at its place,
     /// on a group as the body.
     pub initial: Option<Initial>,
+    /// Whether its nodes wait for the dynamics: over a static stage they are held where they are, as by a support.
+    #[serde(default)]
+    pub hold: bool,
 }
 
 /// Names of the two ends of a discrete element.
@@ -99,9 +102,9 @@ pub struct DashpotPoint {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend(
-    "oneOf" = [{ "required": ["stiffness"] }, { "required": ["curve"] }],
-    "anyOf" = [{ "required": ["axis"] }, { "required": ["obstacle"] }],
-    "not" = { "required": ["axis", "obstacle"] },
+    "oneOf" = [{ "required": ["axis"] }, { "required": ["obstacle"] }],
+    "anyOf" = [{ "required": ["stiffness"] }, { "required": ["curve"] }, { "required": ["law"] }],
+    "not" = { "required": ["stiffness", "curve"] },
 ))]
 pub struct Stop {
     /// Names of two groups of one node, or of one and `"ground"`.
@@ -113,7 +116,7 @@ pub struct Stop {
     pub obstacle: Option<Obstacle>,
     /// With `axis`: by how much the ends can come nearer along it, from their places in the mesh, until the stop acts. With
     /// `obstacle`: by how much the obstacle is further away than its shape says. A negative gap is a stop that is compressed
-    /// at the start. Default: 0.
+    /// at the start, which a `law` in the gap or in the rate alone cannot be. Default: 0.
     pub gap: Option<Coordinate>,
     /// Force over penetration.
     pub stiffness: Option<Stiffness>,
@@ -128,8 +131,8 @@ pub struct Stop {
     /// Treatment of a tensile force of the dashpot.
     #[serde(default)]
     pub adhesion: Adhesion,
-    /// A law of contacts in place of the spring and the dashpot of the stop, whose keys then do not matter: `displacement`,
-    /// `velocity`, `restitution` or `stop`. For comparisons.
+    /// A law of contacts in place of the spring and the dashpot of the stop, whose keys are then not needed and do not matter:
+    /// `displacement`, `velocity`, `restitution` or `stop`. For comparisons.
     pub law: Option<GivenLaw>,
     /// Friction across the axis while the stop is closed. Default: none.
     pub friction: Option<Friction>,

@@ -121,7 +121,7 @@ pub struct Level {
 pub struct Allowable {
     /// Largest force.
     pub force: Option<Force>,
-    /// Largest energy that it takes up.
+    /// Largest energy that it takes up, of contacts whose law takes up any.
     pub energy: Option<Energy>,
 }
 

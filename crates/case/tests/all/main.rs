@@ -3,6 +3,7 @@
 // Helpers of tests panic as the tests themselves do.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod across_zones;
 mod checks;
 mod compare;
 mod damaged;
@@ -12,11 +13,13 @@ mod forged;
 mod general;
 mod grades;
 mod large;
+mod levels;
 mod losses;
 mod means;
 mod offset;
 mod pieces;
 mod quadrature;
+mod quiet;
 mod ranks;
 mod ranks_contacts;
 mod ranks_implicit;
@@ -30,6 +33,8 @@ mod resume;
 mod simulation;
 mod stage_one;
 mod symmetries;
+mod stages;
+mod stops;
 mod verdict;
 mod warnings;
 mod zones;

@@ -14,9 +14,9 @@ use super::stencil::Stencil;
 use super::{Near, Pairing};
 use crate::rest::{BLOCK, Rest};
 use crate::search::faces::{FaceTree, Question};
-use crate::search::faces_point;
 use crate::search::group::Group;
 use crate::search::kept::Kept;
+use crate::search::{Way, faces_point, foot_on, is_between};
 use crate::{Contact, Places, Search, Target};
 
 impl Contact {
@@ -28,6 +28,7 @@ impl Contact {
         rest: &mut Rest,
         pairing: &mut Pairing,
     ) {
+        let watches = search.watches();
         let groups = &mut search.groups;
         groups.resize_with(self.points.len().div_ceil(BLOCK), Group::default);
         if let (Target::Surface(faces), Some(_)) = (&self.target, &self.sight) {
@@ -45,7 +46,8 @@ impl Contact {
         }
         let mut first = 0;
         for points in due.chunk_by(|a, b| *a as usize / BLOCK == *b as usize / BLOCK) {
-            groups[points[0] as usize / BLOCK].due = first..first + points.len();
+            let group = &mut groups[points[0] as usize / BLOCK];
+            (group.due, group.watches) = (first..first + points.len(), watches);
             first += points.len();
         }
         let (faces, span) = (&search.faces, pairing.span);
@@ -135,10 +137,26 @@ impl Contact {
             guess: None,
         };
         let slot = k % BLOCK;
+        if let Some(held) = group.ways.get(slot).and_then(|way| way.held) {
+            let (foot, face) = foot_on(target.0, target.1, held, &x);
+            let near = foot.gap - point.radius + self.offset(k) <= reach.near;
+            let stencil = near.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
+            return (stencil, 0.0);
+        }
         if group.kept.len() <= slot {
             group.kept.resize_with(BLOCK, Kept::default);
         }
         let found = tree.closest(target, &question, &mut group.kept[slot], &mut group.scratch);
+        if let (true, Some((foot, face)), Some(item)) =
+            (group.watches, &found, group.kept[slot].face)
+            && faces_point(foot, face)
+            && is_between(target.0, foot, face)
+        {
+            if group.ways.len() <= slot {
+                group.ways.resize_with(BLOCK, Way::default);
+            }
+            group.ways[slot].goes(item);
+        }
         let is_near = |distance: f64| inside || distance <= limit;
         match (found, view) {
             (Some((foot, face)), _) if is_near(foot.distance) => {

@@ -142,6 +142,12 @@ impl Contact {
         near: &Near,
         pairing: &mut Pairing,
     ) {
+        search.forget_ways();
+        self.pair_due(places, search, near, pairing);
+    }
+
+    /// The same, of an iteration of a step: points that it has made stay with a face do.
+    fn pair_due(&self, places: &Places, search: &mut Search, near: &Near, pairing: &mut Pairing) {
         let mut rest = std::mem::take(&mut search.rest);
         let mut due = std::mem::take(&mut search.due);
         let small = self.sliding == Sliding::Small;
@@ -197,7 +203,7 @@ impl Contact {
     /// `inside` the other side before: they are as [`Contact::pair_fully`] has them. All others face nothing, also those that are deeper
     /// than the reach.
     ///
-    /// What `search` holds from before does not matter to the result.
+    /// What `search` holds from before does not matter to the result, but for the points that [`Search::begin_step`] lets it hold.
     pub fn append_near(
         &self,
         places: &Places,
@@ -213,7 +219,7 @@ impl Contact {
             initial: &Pairing::default(),
             own: None,
         };
-        self.pair_near(places, search, &near, pairing);
+        self.pair_due(places, search, &near, pairing);
     }
 
     /// Appends the points of a contact whose sides are known to be apart: all face nothing.

@@ -1,21 +1,21 @@
-//! The iterations of parts that supports leave free in a static stage, and that contacts may hold.
+//! The iterations of pieces that supports leave free in a static stage, and that contacts may hold.
 //!
 //! Their stiffness is singular. The matrix of the iterations has a proximal term on them,
 //!
 //! `A = K + σ |diag K|`, about the last iterate: it acts on the motion of the iteration, not on x,
 //!
 //! so that where the iterations end nothing of it is left: the balance of forces is tested without it. Iterations shrink
-//! errors by σ/(σ + k), k the stiffness with which contacts hold the part over |diag K|. A round body whose edge has straight sides
+//! errors by σ/(σ + k), k the stiffness with which contacts hold the piece over |diag K|. A round body whose edge has straight sides
 //! rolls with a k of 1e-8 to 1e-6 and of either sign; mixing of the iterations finds its equilibrium all the same, stable or
 //! not, if it is not misled: turns are finite ([`super::rigid`]), and motions that nothing holds stay within what an
 //! iteration knows of the surfaces. A motion that nothing holds and nothing loads stays as it is.
 //!
 //! What is loaded along such a motion is moved on to the next contact; where none is on its way there is no equilibrium
-//! near, and the body and its motion are named. Held is what a support or the row of a contact that carries a force holds.
+//! near, and the body and its motion are named. Held is what a support, a spring, a constraint or the row of a contact that carries a force
+//! holds.
 //!
 //! The proximal point algorithm: R. T. Rockafellar (1976), SIAM J. Control Optim. 14; here one Newton iteration to each of its.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use carom_contact::Target;
@@ -38,16 +38,16 @@ const REACH: f64 = 0.25;
 const STEADY: f64 = 1e-6;
 
 impl Driver {
-    /// Moves parts that are loaded along a rigid motion that nothing holds to the next contact on their way; whether that was
-    /// any way at all. The load of parts that hang together with nothing else is that of an equilibrium, whatever is
+    /// Moves pieces that are loaded along a rigid motion that nothing holds to the next contact on their way; whether that was
+    /// any way at all. The load of pieces that hang together with nothing else is that of an equilibrium, whatever is
     /// deformed. Contact with something else has forces of the iteration, which change as it goes on: there a load
     /// counts once it does not.
     ///
     /// # Errors
     /// No contact on the way; forces that cannot be taken where it ends.
     pub(super) fn approach(&mut self, scale: f64) -> Result<bool, Error> {
-        let (system, parts) = (Arc::clone(&self.system), Arc::clone(&self.floating.parts));
-        let rigid = Rigid::new(&system, &parts, Some(&self.places()));
+        let (system, pieces) = (Arc::clone(&self.system), Arc::clone(&self.floating.pieces));
+        let rigid = Rigid::new(&system, &pieces, Some(&self.places()));
         let Some(c) = self.certain_load(&rigid, scale) else {
             return match self.tips(&rigid) {
                 true => Err(self.unheld(&rigid, &self.floating.carried)),
@@ -80,20 +80,20 @@ impl Driver {
         let change = before.iter().zip(&c).map(|(before, c)| c - before);
         let change: Vec<f64> = change.collect();
         let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
-        let grounded = self.grounded(rigid);
+        let grounded = self.grounded();
         if !grounded.is_empty() {
             self.floating.carried.clone_from(&c);
         }
         if !steady {
-            for part in grounded {
-                c[rigid.coordinates(part)].fill(0.0);
+            for piece in grounded {
+                c[rigid.coordinates(piece)].fill(0.0);
             }
         }
         let least = (self.system.nonlinear.iteration.tolerance * scale).max(self.rounding());
         (norm(&c) > least).then_some(c)
     }
 
-    /// Whether contact carries a part that has gone on, for as many iterations as may be taken, along a motion with no contact on
+    /// Whether contact carries a piece that has gone on, for as many iterations as may be taken, along a motion with no contact on
     /// its way, and its load has not become less than half.
     fn tips(&mut self, rigid: &Rigid) -> bool {
         let load = norm(&self.floating.load);
@@ -115,15 +115,15 @@ impl Driver {
     }
 
     /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that and
-    /// no contact carries the part, or comes to.
+    /// no contact carries the piece, or comes to.
     pub(super) fn unbalanced(&self, passes: usize, imbalance: f64) -> Error {
         let system = &*self.system;
         if self.floats() {
-            let rigid = Rigid::new(system, &self.floating.parts, Some(&self.places()));
+            let rigid = Rigid::new(system, &self.floating.pieces, Some(&self.places()));
             let c = self.unheld_load(&rigid);
             let mut loose = c.clone();
-            for part in self.grounded(&rigid) {
-                loose[rigid.coordinates(part)].fill(0.0);
+            for piece in self.grounded() {
+                loose[rigid.coordinates(piece)].fill(0.0);
             }
             let free = || {
                 let most = norm(&c) > 0.5 * imbalance;
@@ -141,11 +141,11 @@ impl Driver {
     }
 
     fn unheld(&self, rigid: &Rigid, c: &[f64]) -> Error {
-        let (part, motion) = rigid.name(c);
+        let (piece, motion) = rigid.name(c);
         Error::Unheld {
             step: self.state.step + 1,
             time: self.state.time + self.dt,
-            body: body_of(&self.system, part),
+            body: body_of(&self.system, piece),
             motion: motion.to_string(),
         }
     }
@@ -163,7 +163,7 @@ impl Driver {
         places
     }
 
-    /// Loads and contact forces along the rigid motions, less what is held: internal forces have no resultant.
+    /// Loads and contact forces along the rigid motions, less what is held: internal forces have no resultant, and those of springs are held.
     fn unheld_load(&self, rigid: &Rigid) -> Vec<f64> {
         let vectors = &self.vectors;
         let left = (0..vectors.x.len()).filter(|&i| !self.system.fixed[i]);
@@ -172,29 +172,32 @@ impl Driver {
         c
     }
 
-    /// Parts that hang together by contact forces with something that does not float.
-    fn grounded(&self, rigid: &Rigid) -> Vec<usize> {
-        let count = self.floating.parts.len();
+    /// Pieces that hang together by contact forces with something that does not float.
+    fn grounded(&self) -> Vec<usize> {
+        let pieces = &*self.floating.pieces;
+        let count = pieces.len();
         // one set more: all that does not float
         let mut set: Vec<usize> = (0..=count).collect();
         for point in self.carrying() {
             let (contact, _) = self.system.point(point);
             let (unknowns, _) = self.pairing.rows.row(point);
-            let parts = unknowns
+            let touched = unknowns
                 .iter()
-                .map(|&i| rigid.part_of(i as usize).unwrap_or(count));
-            let mut parts: Vec<usize> = parts.collect();
+                .map(|&i| pieces.of(i as usize).unwrap_or(count));
+            let mut touched: Vec<usize> = touched.collect();
             if matches!(contact.target, Target::Rigid(_)) {
-                parts.push(count);
+                touched.push(count);
             }
-            for pair in parts.windows(2) {
-                let [from, to] = [pair[0], pair[1]].map(|part| set[part]);
+            for pair in touched.windows(2) {
+                let [from, to] = [pair[0], pair[1]].map(|piece| set[piece]);
                 for set in set.iter_mut().filter(|set| **set == from) {
                     *set = to;
                 }
             }
         }
-        (0..count).filter(|&part| set[part] == set[count]).collect()
+        (0..count)
+            .filter(|&piece| set[piece] == set[count])
+            .collect()
     }
 
     /// Shortens the motion of the iteration along rigid motions that nothing holds to the reach of what it knows of the
@@ -202,14 +205,15 @@ impl Driver {
     pub(super) fn restrain(&mut self) -> bool {
         let mut shortened = false;
         let system = Arc::clone(&self.system);
-        let rigid = Rigid::new(&system, &self.floating.parts, Some(&self.places()));
+        let pieces = Arc::clone(&self.floating.pieces);
+        let rigid = Rigid::new(&system, &pieces, Some(&self.places()));
         let mut c = rigid.nearest(&self.vectors.dx);
         self.held(&rigid).take_from(&mut c);
-        for (part, size) in self.floating.sizes.iter().enumerate() {
-            let reach = rigid.reach(part, &c);
+        for (piece, size) in self.floating.sizes.iter().enumerate() {
+            let reach = rigid.reach(piece, &c);
             let beyond = (1.0 - REACH * size / reach.max(f64::MIN_POSITIVE)).max(0.0);
             shortened |= beyond > 0.0;
-            c[rigid.coordinates(part)]
+            c[rigid.coordinates(piece)]
                 .iter_mut()
                 .for_each(|c| *c *= beyond);
         }
@@ -221,7 +225,7 @@ impl Driver {
         shortened
     }
 
-    /// Adds to x what finite turns of the parts have beyond the linear motion `share` dx from `before`.
+    /// Adds to x what finite turns of the pieces have beyond the linear motion `share` dx from `before`.
     pub(super) fn turn(&mut self, share: f64) {
         let system = Arc::clone(&self.system);
         let mut places = vec![0.0; self.vectors.x.len()];
@@ -232,7 +236,8 @@ impl Driver {
             [&self.vectors.before, &self.vectors.push],
             &mut places,
         );
-        let rigid = Rigid::new(&system, &self.floating.parts, Some(&places));
+        let pieces = Arc::clone(&self.floating.pieces);
+        let rigid = Rigid::new(&system, &pieces, Some(&places));
         let mut c = rigid.nearest(&self.vectors.dx);
         c.iter_mut().for_each(|c| *c *= share);
         for (i, u) in rigid.arc(&c) {
@@ -240,25 +245,31 @@ impl Driver {
         }
     }
 
-    /// What supports, springs and contacts that carry a force hold of the rigid motions.
+    /// What supports, springs, constraints and contacts that carry a force hold of the rigid motions.
     fn held(&self, rigid: &Rigid) -> Span {
         let mut held = Span::default();
-        for i in self.floating.parts.iter().flat_map(Range::clone) {
+        for i in self.floating.pieces.unknowns() {
             if self.system.fixed[i] {
                 held.add(rigid.of([(i, 1.0)]));
             }
         }
+        for row in rigid.held_inside() {
+            held.add(row);
+        }
         for body in &self.system.bodies {
             body.each_spring(&mut |row| {
-                held.add(rigid.of(row.iter().copied()));
+                held.add(rigid.row(row.iter().copied()));
             });
+        }
+        for row in self.rows.iter() {
+            held.add(rigid.row(row.iter().map(|&(i, c)| (i as usize, c))));
         }
         let tangents = &self.pairing.tangents[..self.system.tangents()];
         for point in self.carrying() {
-            held.add(rigid.row(&self.pairing.rows, point));
+            held.add(rigid.contact_row(&self.pairing.rows, point));
             if self.slips.get(point) == Some(&Slip::Stick) {
                 for rows in tangents {
-                    held.add(rigid.row(rows, point));
+                    held.add(rigid.contact_row(rows, point));
                 }
             }
         }
@@ -281,7 +292,7 @@ impl Driver {
             {
                 continue;
             }
-            let row = rigid.row(&self.pairing.rows, point);
+            let row = rigid.contact_row(&self.pairing.rows, point);
             let rate: f64 = row.iter().zip(c).map(|(n, c)| n * c).sum();
             if rate < -INDEPENDENT * norm(&row) * norm(c) {
                 let until = self.now(point, true).0.max(0.0) / -rate;

@@ -5,7 +5,6 @@
 //! between two of them, these parts have one matrix together.
 
 use std::cmp::Reverse;
-use std::ops::Range;
 use std::sync::Arc;
 
 use carom_algebra::csr::Csr;
@@ -18,6 +17,7 @@ use carom_ranks::Ranks;
 use super::linear_part::linear_part;
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
+use super::pieces::Pieces;
 use super::tangent_solver::tangent_solver;
 use crate::at_rows::AtRows;
 use crate::choice;
@@ -118,8 +118,8 @@ pub(super) struct At<'a> {
     pub(super) history: &'a [f64],
     /// The rows of the links there.
     pub(super) rows: &'a Arc<Vec<LinkRow>>,
-    /// Parts with a proximal term, and its part of the diagonal.
-    pub(super) proximal: (&'a [Range<usize>], f64),
+    /// Pieces with a proximal term, and its part of the diagonal.
+    pub(super) proximal: (Option<&'a Pieces>, f64),
     /// Whether the derivative without contact forces is kept, where all parts have one that changes.
     pub(super) whole: bool,
     /// Whether the curvature of contacts is taken within each of their sides alone, where passes make up for what couples the two.
@@ -152,7 +152,16 @@ impl Effective {
     /// Shares the products of iterations with others. Matrices at hand are made anew.
     pub(super) fn share(&mut self, ranks: &Ranks) {
         self.ranks = ranks.clone();
-        (self.now, self.kept, self.aside) = (None, Vec::new(), None);
+        self.forget();
+    }
+
+    /// Drops all matrices: they are made anew.
+    pub(super) fn forget(&mut self) {
+        let aside = self.aside.take().map(|aside| *aside);
+        let all = self.now.take().into_iter().chain(self.kept.drain(..));
+        for dropped in all.chain(aside) {
+            dropped.add_work(&mut self.retired);
+        }
     }
 
     /// Whether the matrices at hand are those of these maps.

@@ -1,4 +1,4 @@
-//! Parts that supports leave free in a static stage, and that contacts may hold: which they are, and what the iterations know of
+//! Pieces that supports leave free in a static stage, and that contacts may hold: which they are, and what the iterations know of
 //! them. [`super::approach`] has what is done about them.
 
 use std::ops::Range;
@@ -7,6 +7,7 @@ use std::sync::Arc;
 use carom_contact::Target;
 
 use super::joined::Joined;
+use super::pieces::{Piece, Pieces};
 use crate::error::Error;
 use crate::system::System;
 
@@ -19,30 +20,30 @@ pub(super) const GROWTH: f64 = 8.0;
 /// Largest σ.
 pub(super) const LARGEST: f64 = 1.0;
 
-/// Parts that float, and σ in the attempt under way.
+/// Pieces that float, and σ in the attempt under way.
 pub(super) struct Floating {
-    /// Their unknowns, ascending.
-    pub(super) parts: Arc<[Range<usize>]>,
+    pub(super) pieces: Arc<Pieces>,
     pub(super) weight: f64,
-    /// Mean over its elements of the least distance of two nodes of one, m, part by part.
+    /// Mean over its elements of the least distance of two nodes of one, m, piece by piece; infinite without elements.
     pub(super) sizes: Vec<f64>,
     /// Loads along motions that nothing held an iteration ago; empty in the first.
     pub(super) load: Vec<f64>,
-    /// The same when contact with something else carried a part last; empty if none did.
+    /// The same when contact with something else carried a piece last; empty if none did.
     pub(super) carried: Vec<f64>,
-    /// For how many iterations contact has carried a part that is loaded along a motion with no contact on its way.
+    /// For how many iterations contact has carried a piece that is loaded along a motion with no contact on its way.
     pub(super) tipping: usize,
     /// Size of that load in the first of them.
     pub(super) tipped: f64,
 }
 
 impl Floating {
-    /// The parts of a static stage that supports leave free to move.
+    /// The pieces of a static stage that supports leave free to move: parts, and where groups of nodes in a part move against each other with
+    /// nothing but contacts against it, those groups.
     ///
     /// # Errors
     /// One that no contact with anything else could hold.
     pub(super) fn new(system: &System) -> Result<Floating, Error> {
-        let mut parts = Vec::new();
+        let mut pieces = Vec::new();
         let stages = match system.nonlinear.preload {
             Some(_) => &system.parts[..],
             None => &[],
@@ -52,14 +53,19 @@ impl Floating {
             let free = whole.free();
             let apart = Joined::apart(system, part);
             // what the bodies of the part can do beyond moving together
-            if apart.groups.len() > 1 {
-                let against = apart.free();
-                let loose = against
-                    .iter()
-                    .find(|(group, _)| !touches(system, &group.nodes));
-                if let Some(&(group, motion)) = loose.filter(|_| against.len() > free.len()) {
+            let against = match apart.groups.len() > 1 {
+                true => apart.free(),
+                false => Vec::new(),
+            };
+            if against.len() > free.len() {
+                let mut alone = against.iter();
+                if let Some((group, motion)) =
+                    alone.find(|(group, _)| !touches(system, &group.nodes))
+                {
                     return Err(free_motion(system, &group.nodes, motion));
                 }
+                pieces.extend(apart.loose().map(|group| group.nodes.clone()));
+                continue;
             }
             let Some(&(group, motion)) = free.first() else {
                 continue;
@@ -67,12 +73,13 @@ impl Floating {
             if !touches(system, &group.nodes) {
                 return Err(free_motion(system, &group.nodes, motion));
             }
-            parts.push(part.clone());
+            let nodes = system.nodes_of(part).map(|node| node as u32);
+            pieces.push(nodes.collect());
         }
-        let sizes = parts.iter().map(|part| size_of_elements(system, part));
+        let pieces = Pieces::new(system, pieces);
         Ok(Floating {
-            sizes: sizes.collect(),
-            parts: parts.into(),
+            sizes: sizes_of_elements(system, &pieces),
+            pieces: Arc::new(pieces),
             weight: WEIGHT,
             load: Vec::new(),
             carried: Vec::new(),
@@ -90,16 +97,21 @@ impl Floating {
     }
 }
 
-/// Mean over the elements of a part of the least distance of two nodes of one, m.
-fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0f64);
+/// Mean over the elements of each piece of the least distance of two nodes of one, m: how far normals and faces say what comes. A piece without
+/// elements, as a point mass, has none that could mislead.
+fn sizes_of_elements(system: &System, pieces: &Pieces) -> Vec<f64> {
+    let mut sums = vec![(0.0, 0.0f64); pieces.len()];
+    if pieces.is_empty() {
+        return Vec::new();
+    }
     for body in &system.bodies {
         body.each_element(&mut |nodes| {
-            if nodes.len() < 2
-                || !nodes
-                    .iter()
-                    .any(|&node| part.contains(&system.unknowns.first(node)))
-            {
+            let unknown = |node: &u32| system.unknowns.of(*node).next();
+            let of = |node: &u32| unknown(node).and_then(|first| pieces.of(first));
+            let mut own: Vec<usize> = nodes.iter().filter_map(of).collect();
+            own.sort_unstable();
+            own.dedup();
+            if nodes.len() < 2 || own.is_empty() {
                 return;
             }
             let mut least = f64::INFINITY;
@@ -109,11 +121,17 @@ fn size_of_elements(system: &System, part: &Range<usize>) -> f64 {
                     least = least.min((0..3).map(|i| (a[i] - b[i]).powi(2)).sum());
                 }
             }
-            sum += least.sqrt();
-            count += 1.0;
+            for piece in own {
+                sums[piece].0 += least.sqrt();
+                sums[piece].1 += 1.0;
+            }
         });
     }
-    sum / count.max(1.0)
+    let mean = |&(sum, count): &(f64, f64)| match count > 0.0 {
+        true => sum / count,
+        false => f64::INFINITY,
+    };
+    sums.iter().map(mean).collect()
 }
 
 fn free_motion(system: &System, nodes: &[u32], motion: &str) -> Error {
@@ -151,14 +169,19 @@ fn touches(system: &System, nodes: &[u32]) -> bool {
     })
 }
 
-/// Name of the body at the first node of a part.
-pub(super) fn body_of(system: &System, part: &Range<usize>) -> String {
-    body_at(system, system.unknowns.node(part.start))
+/// Name of the body at the first node of a piece.
+pub(super) fn body_of(system: &System, piece: &Piece) -> String {
+    body_at(system, system.unknowns.node(piece.unknowns[0]))
 }
 
 /// Name of a body with a node.
 fn body_at(system: &System, first: u32) -> String {
-    let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(node, _)| *node == first);
-    let body = system.body_masses.iter().position(owns).unwrap_or(0);
-    system.bodies[body].name().to_string()
+    let bodies = system.bodies.iter().zip(&system.body_masses);
+    let mut owners = bodies.filter(|(body, masses)| {
+        // the amplitudes of a reduced body are at a node of their own
+        let amplitudes = body.as_reduced().and_then(|body| body.nodes().last());
+        amplitudes == Some(&first) || masses.iter().any(|(node, _)| *node == first)
+    });
+    let owner = owners.next().map_or(&system.bodies[0], |(body, _)| body);
+    owner.name().to_string()
 }

@@ -7,9 +7,11 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use carom_algebra::basis::Amplitude;
 use carom_algebra::unknowns::Kind;
+use carom_bodies::{Body, Reduced};
 
-use super::rigid::{INDEPENDENT, Mode, modes, turn_of};
+use super::rigid::{INDEPENDENT, Mode, ROUNDING, held_inside, modes, of_amplitude, turn_of};
 use crate::system::System;
 
 /// Nodes that move as one.
@@ -30,6 +32,8 @@ pub(super) struct Joined<'a> {
     group: Vec<usize>,
     first: u32,
     modes: Vec<Mode>,
+    /// The amplitudes of the part, by unknown.
+    amplitudes: BTreeMap<usize, &'a Amplitude>,
 }
 
 impl<'a> Joined<'a> {
@@ -38,27 +42,22 @@ impl<'a> Joined<'a> {
         Joined::new(system, part, |leaders| leaders.fill(0))
     }
 
-    /// A part as the groups of nodes that elements join. The modes of a reduced body count as held: where one is in the part, it is
-    /// taken as a whole.
+    /// A part as the groups of nodes that elements join; those of a reduced body are one.
     pub(super) fn apart(system: &'a System, part: &Range<usize>) -> Joined<'a> {
         let first = system.nodes_of(part).start;
         let inside = |node: u32| part.contains(&system.unknowns.first(node));
         Joined::new(system, part, |leaders| {
             for body in &system.bodies {
-                let reduced = body.as_reduced().is_some();
                 if body.as_discrete().is_some() {
                     continue;
                 }
                 let mut own = false;
                 body.each_element(&mut |nodes| {
                     own |= inside(nodes[0]);
-                    for &node in nodes.iter().filter(|_| own && !reduced) {
+                    for &node in nodes.iter().filter(|_| own) {
                         unite(leaders, [nodes[0], node].map(|n| n as usize - first));
                     }
                 });
-                if reduced && own {
-                    leaders.fill(0);
-                }
             }
         })
     }
@@ -98,9 +97,11 @@ impl<'a> Joined<'a> {
                 size: if size > 0.0 { size } else { 1.0 },
             }
         });
+        let amplitudes = system.unknowns.amplitudes();
         Joined {
             groups: groups.collect(),
             system,
+            amplitudes: amplitudes.filter(|(i, _)| part.contains(i)).collect(),
             part: part.clone(),
             group,
             first,
@@ -108,13 +109,16 @@ impl<'a> Joined<'a> {
         }
     }
 
-    /// As many motions as nothing holds, group and name of each: first those that are free by themselves. In a part of several groups
-    /// that nothing holds as a whole the motions of the whole are among them.
-    pub(super) fn free(&self) -> Vec<(&Group, &'static str)> {
-        let count = self.modes.len();
-        let mut held = Echelon::new(self.groups.len() * count);
+    /// What supports, springs and constraints hold of the motions.
+    fn held(&self) -> Echelon {
+        let mut held = Echelon::new(self.groups.len() * self.modes.len());
         for unknown in self.part.clone().filter(|&i| self.system.fixed[i]) {
             held.add(self.row([(unknown, 1.0)]));
+        }
+        for body in self.system.bodies.iter().filter_map(Body::as_reduced) {
+            for (node, kind) in held_inside(self.system, body) {
+                held.add(self.row_inside(body, (node, kind)));
+            }
         }
         for body in &self.system.bodies {
             body.each_spring(&mut |row| {
@@ -124,6 +128,25 @@ impl<'a> Joined<'a> {
         for row in self.system.link_rows.iter() {
             held.add(self.row(row.iter().map(|&(unknown, c)| (unknown as usize, c))));
         }
+        held
+    }
+
+    /// The groups that move in any motion that nothing holds.
+    pub(super) fn loose(&self) -> impl Iterator<Item = &Group> {
+        let (held, count) = (self.held(), self.modes.len());
+        let groups = self.groups.iter().enumerate();
+        let loose = groups.filter(move |(g, group)| {
+            let mut motions = self.modes.iter().enumerate();
+            motions.any(|(k, mode)| self.moves(group, mode) && !held.holds(g * count + k))
+        });
+        loose.map(|(_, group)| group)
+    }
+
+    /// As many motions as nothing holds, group and name of each: first those that are free by themselves. In a part of several groups
+    /// that nothing holds as a whole the motions of the whole are among them.
+    pub(super) fn free(&self) -> Vec<(&Group, &'static str)> {
+        let count = self.modes.len();
+        let mut held = self.held();
         let mut motions = Vec::new();
         for (g, group) in self.groups.iter().enumerate() {
             let own = self.modes.iter().enumerate();
@@ -148,10 +171,11 @@ impl<'a> Joined<'a> {
         own.any(|unknown| self.value(group, mode, unknown) != 0.0)
     }
 
-    /// Σ f_i r_j(i) by coordinate j of unknowns i of the part and their values f.
+    /// Σ f_i r_j(i) by coordinate j of unknowns i of the part and their values f; nothing where all of it is what rounding leaves of its
+    /// terms, as of a spring between two nodes of a group.
     fn row(&self, terms: impl IntoIterator<Item = (usize, f64)>) -> BTreeMap<usize, f64> {
         let count = self.modes.len();
-        let mut row = BTreeMap::new();
+        let (mut row, mut size) = (BTreeMap::new(), 0.0_f64);
         for (unknown, f) in terms {
             if !self.part.contains(&unknown) {
                 continue;
@@ -159,28 +183,61 @@ impl<'a> Joined<'a> {
             let node = self.system.unknowns.node(unknown);
             let g = self.group[(node - self.first) as usize];
             for (k, mode) in self.modes.iter().enumerate() {
-                *row.entry(g * count + k).or_default() +=
-                    f * self.value(&self.groups[g], mode, unknown);
+                let term = f * self.value(&self.groups[g], mode, unknown);
+                *row.entry(g * count + k).or_default() += term;
+                size = size.max(term.abs());
             }
         }
+        row.retain(|_, sum: &mut f64| sum.abs() > ROUNDING * size);
         row
+    }
+
+    /// The group of a node; none of a node of another part.
+    fn group_of(&self, node: u32) -> Option<usize> {
+        let own = node.checked_sub(self.first)?;
+        let group = self.group.get(own as usize)?;
+        (*group != usize::MAX).then_some(*group)
+    }
+
+    /// By coordinate what a node that a reduced body has not retained does in the motions; nothing of a body of another part.
+    fn row_inside(&self, body: &Reduced, of: (u32, Kind)) -> BTreeMap<usize, f64> {
+        let group = body.nodes().iter().find_map(|&node| self.group_of(node));
+        let Some(g) = group else {
+            return BTreeMap::new();
+        };
+        let modes = self.modes.iter().enumerate();
+        let values = modes.map(|(k, mode)| {
+            let value = self.value_at(&self.groups[g], mode, of);
+            (g * self.modes.len() + k, value)
+        });
+        values.collect()
     }
 
     /// The value of a motion at an unknown.
     fn value(&self, group: &Group, mode: &Mode, unknown: usize) -> f64 {
         let unknowns = &self.system.unknowns;
         let node = unknowns.node(unknown);
-        let place = &self.system.x[node as usize];
         match (unknowns.kind(unknown), unknowns.frame(node)) {
-            (Kind::Translation(axis), _) => {
-                mode.1(&[0, 1, 2].map(|j| (place[j] - group.centre[j]) / group.size))[axis]
-            }
-            (Kind::Rotation(axis), None) => turn_of(mode)[axis] / group.size,
             (Kind::Rotation(axis), Some(frame)) => {
                 let (matrix, turn) = (self.system.initial_frames[frame].matrix(), turn_of(mode));
                 (0..3).map(|i| matrix[(i, axis)] * turn[i]).sum::<f64>() / group.size
             }
-            (Kind::Amplitude(_), _) => 0.0,
+            (Kind::Amplitude(_), _) => self.amplitudes.get(&unknown).map_or(0.0, |amplitude| {
+                of_amplitude(mode, (&group.centre, group.size), amplitude)
+            }),
+            (kind, _) => self.value_at(group, mode, (node, kind)),
+        }
+    }
+
+    /// The same at a translation or a small rotation of a node.
+    fn value_at(&self, group: &Group, mode: &Mode, (node, kind): (u32, Kind)) -> f64 {
+        let place = &self.system.x[node as usize];
+        match kind {
+            Kind::Translation(axis) => {
+                mode.1(&[0, 1, 2].map(|j| (place[j] - group.centre[j]) / group.size))[axis]
+            }
+            Kind::Rotation(axis) => turn_of(mode)[axis] / group.size,
+            Kind::Amplitude(_) => 0.0,
         }
     }
 }
@@ -212,6 +269,24 @@ impl Echelon {
         for &column in row.keys() {
             self.known[column] = true;
         }
+        let mut row = self.rest(row);
+        let largest = row.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+        let Some((&pivot, &value)) = largest else {
+            return false;
+        };
+        row.values_mut().for_each(|v| *v /= value);
+        self.of[pivot] = Some(self.rows.len());
+        self.rows.push((pivot, row));
+        true
+    }
+
+    /// Whether a column is zero in all that the rows leave.
+    fn holds(&self, column: usize) -> bool {
+        self.known[column] && self.rest(BTreeMap::from([(column, 1.0)])).is_empty()
+    }
+
+    /// What of a row is independent of those there.
+    fn rest(&self, mut row: BTreeMap<usize, f64>) -> BTreeMap<usize, f64> {
         // the earliest pivot first: later rows have nothing there
         while let Some(k) = row.keys().filter_map(|&column| self.of[column]).min() {
             let (pivot, other) = &self.rows[k];
@@ -222,14 +297,7 @@ impl Echelon {
             row.remove(pivot);
             row.retain(|_, v| v.abs() > INDEPENDENT);
         }
-        let largest = row.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let Some((&pivot, &value)) = largest else {
-            return false;
-        };
-        row.values_mut().for_each(|v| *v /= value);
-        self.of[pivot] = Some(self.rows.len());
-        self.rows.push((pivot, row));
-        true
+        row
     }
 }
 

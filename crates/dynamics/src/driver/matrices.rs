@@ -33,7 +33,9 @@ impl Driver {
             return false;
         }
         let mut bodies = (0..system.bodies.len()).filter(|&k| system.part_of_body[k] == part);
-        let floats = self.floats() && self.floating.parts.contains(&system.parts[part]);
+        let own = &system.parts[part];
+        let mut pieces = self.floating.pieces.iter();
+        let floats = self.floats() && pieces.any(|piece| own.contains(&piece.unknowns[0]));
         let changes = |k: usize| !system.bodies[k].is_linear() || system.nonlinear.has_follower(k);
         floats || bodies.any(changes)
     }
@@ -66,9 +68,9 @@ impl Driver {
             [&self.vectors.x, &self.vectors.push],
             &mut self.vectors.place,
         );
-        let floats: &[_] = match self.floats() {
-            true => &self.floating.parts,
-            false => &[],
+        let floats = match self.floats() {
+            true => Some(&*self.floating.pieces),
+            false => None,
         };
         let mut at = At {
             maps: &self.maps,
@@ -101,7 +103,7 @@ impl Driver {
             at.u = &motion.u;
             made = self.effective.renew(&system, &at, &turning);
         }
-        while made.is_err() && !floats.is_empty() && at.proximal.1 < LARGEST {
+        while made.is_err() && floats.is_some() && at.proximal.1 < LARGEST {
             at.proximal.1 *= HEAVIER;
             made = self.effective.renew(&system, &at, &turning);
         }

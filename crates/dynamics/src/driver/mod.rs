@@ -52,6 +52,7 @@ mod near;
 mod obstacles;
 pub mod paired;
 mod part_matrix;
+mod pieces;
 mod predictor;
 mod projection;
 mod ranked;
@@ -121,6 +122,8 @@ static AT_REST: Law = Law::Displacement(Displacement { projection: false });
 /// Takes steps.
 pub struct Driver {
     system: Arc<System>,
+    /// That of the dynamics, as long as bodies wait for these in a static stage.
+    released: Option<Arc<System>>,
     /// Size of the attempt under way, s, and the maps of the zones.
     dt: f64,
     maps: Maps,
@@ -268,9 +271,9 @@ impl Driver {
         self.earlier.add(costs);
     }
 
-    /// Whether parts float in the attempt under way.
+    /// Whether pieces float in the attempt under way.
     pub(super) fn floats(&self) -> bool {
-        self.maps.is_static() && !self.floating.parts.is_empty()
+        self.maps.is_static() && !self.floating.pieces.is_empty()
     }
 
     /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the

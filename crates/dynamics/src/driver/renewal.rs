@@ -11,6 +11,7 @@ use carom_bodies::Placement;
 use super::effective::{At, Matrices, Turning};
 use super::linking::{Linking, Made};
 use super::loads::damping_rate;
+use super::pieces::Pieces;
 use crate::at_rows::AtRows;
 use crate::choice::{self, Use};
 use crate::costs::Work;
@@ -87,7 +88,6 @@ impl Matrices {
         a: &Csr,
         retired: &mut Work,
     ) -> Result<(), Error> {
-        let (floating, weight) = at.proximal;
         for (k, group) in self.operators.groups[self.first..].iter_mut().enumerate() {
             let fixed: Vec<bool> = group
                 .parts
@@ -103,16 +103,8 @@ impl Matrices {
                     .push(Part::new(a, &group.parts, |i| system.fixed[i])),
             }
             let free = self.free[k].matrix_mut();
-            let mut begin = 0;
-            for part in &group.parts {
-                if floating.contains(part) {
-                    for i in (0..part.len()).filter(|&i| !fixed[begin + i]) {
-                        let own = a.get(part.start + i, part.start + i).abs();
-                        free.add(begin + i, begin + i, weight * own);
-                    }
-                }
-                begin += part.len();
-            }
+            let of = (&group.parts[..], &fixed[..]);
+            add_proximal((at.proximal, &self.diagonal[..]), of, free);
             let all = system.unknowns.node_of_each();
             let unknowns = group.parts.iter().cloned().flatten();
             let nodes: Vec<u32> = unknowns.map(|unknown| all[unknown]).collect();
@@ -326,6 +318,26 @@ impl Matrices {
         }
         super::loads::add_tangent(system, (at.maps, at.start, at.dt), at.u, a);
         Ok(())
+    }
+}
+
+/// Adds the proximal term of the pieces to the matrix of a group, `free`, from the diagonal of all unknowns. What has no stiffness of its own, as a
+/// point mass, has that of the stiffest unknown.
+fn add_proximal(
+    ((pieces, weight), diagonal): ((Option<&Pieces>, f64), &[f64]),
+    (parts, fixed): (&[Range<usize>], &[bool]),
+    free: &mut Csr,
+) {
+    let Some(pieces) = pieces else { return };
+    let stiffest = diagonal.iter().fold(0.0_f64, |most, k| most.max(k.abs()));
+    let stiffest = if stiffest > 0.0 { stiffest } else { 1.0 };
+    let unknowns = parts.iter().cloned().flatten().enumerate();
+    for (place, unknown) in unknowns.filter(|(place, _)| !fixed[*place]) {
+        if pieces.of(unknown).is_some() {
+            let own = diagonal[unknown].abs();
+            let scale = if own > 0.0 { own } else { stiffest };
+            free.add(place, place, weight * scale);
+        }
     }
 }
 

@@ -1,29 +1,38 @@
-//! Rigid motions of parts that float, and what vectors span in them.
+//! Rigid motions of pieces, and what vectors span in them.
 //!
 //! A motion of the iterations is linear in its coordinates; a turn by a finite angle is not, and its linear motion stretches the
-//! body by θ²/2. What is missing is added: `u = (exp(θ×) - 1 - θ×) d`, d from the centre of the part.
+//! body by θ²/2. What is missing is added: `u = (exp(θ×) - 1 - θ×) d`, d from the centre of the piece.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
+use carom_algebra::basis::Amplitude;
 use carom_algebra::unknowns::Kind;
+use carom_bodies::{Body, Reduced};
 use carom_contact::Rows;
 
+use super::pieces::{Piece, Pieces};
 use crate::system::System;
 
 /// What of a unit vector counts as independent of others.
 pub(super) const INDEPENDENT: f64 = 1e-6;
 
-/// Rigid motions of parts: u = Σ c_j r_j, those of a part one after the other.
+/// What is left of the sum of terms that cancel, over the sum of their magnitudes.
+pub(super) const ROUNDING: f64 = 1e-12;
+
+/// Rigid motions of pieces: u = Σ c_j r_j, those of a piece one after the other.
 pub(super) struct Rigid<'a> {
     system: &'a System,
-    parts: &'a [Range<usize>],
+    pieces: &'a Pieces,
     modes: Vec<Mode>,
     frames: Vec<Frame>,
     /// Places of the nodes, m.
     places: Vec<[f64; 3]>,
+    /// The amplitudes of reduced bodies, by unknown.
+    amplitudes: BTreeMap<usize, &'a Amplitude>,
 }
 
-/// What scales the motions of a part.
+/// What scales the motions of a piece.
 struct Frame {
     centre: [f64; 3],
     /// Largest distance of a node from the centre along an axis, m.
@@ -32,18 +41,26 @@ struct Frame {
     unit: f64,
     /// Σ r_j² over its unknowns, motion by motion.
     squares: Vec<f64>,
-    /// Whether it turns by finite angles: a body at small strain does not, and one with supports turns about them.
-    spins: bool,
+}
+
+impl Frame {
+    /// The value of a motion at a translation or a small rotation of a node at a place.
+    fn value(&self, mode: &Mode, (place, kind): (&[f64; 3], Kind)) -> f64 {
+        match kind {
+            Kind::Translation(axis) => {
+                let x = [0, 1, 2].map(|j| (place[j] - self.centre[j]) / self.size);
+                self.unit * mode.1(&x)[axis]
+            }
+            Kind::Rotation(axis) => self.unit / self.size * turn_of(mode)[axis],
+            Kind::Amplitude(_) => 0.0,
+        }
+    }
 }
 
 impl<'a> Rigid<'a> {
     /// `u`: displacement of the nodes, m, of bodies at finite strain; one at small strain has the rigid motions of its reference
     /// places.
-    pub(super) fn new(
-        system: &'a System,
-        parts: &'a [Range<usize>],
-        u: Option<&[f64]>,
-    ) -> Rigid<'a> {
+    pub(super) fn new(system: &'a System, pieces: &'a Pieces, u: Option<&[f64]>) -> Rigid<'a> {
         let dim = system.dim;
         let mut places = system.x.clone();
         for (body, masses) in system.bodies.iter().zip(&system.body_masses) {
@@ -57,29 +74,32 @@ impl<'a> Rigid<'a> {
                 }
             }
         }
-        let frames = parts.iter().map(|part| {
-            let nodes = &places[system.nodes_of(part)];
-            let n = nodes.len() as f64;
-            let centre = [0, 1, 2].map(|i| nodes.iter().map(|x| x[i]).sum::<f64>() / n);
+        let frames = pieces.iter().map(|piece| {
+            let nodes = || piece.nodes.iter().map(|&node| &places[node as usize]);
+            let n = piece.nodes.len() as f64;
+            let centre = [0, 1, 2].map(|i| nodes().map(|x| x[i]).sum::<f64>() / n);
             let far = |x: &[f64; 3]| (0..3).map(|i| (x[i] - centre[i]).abs()).fold(0.0, f64::max);
+            let size = nodes().map(far).fold(0.0, f64::max);
             Frame {
                 centre,
-                size: nodes.iter().map(far).fold(f64::MIN_POSITIVE, f64::max),
+                // the turns of a single node have no length to be measured by
+                size: if size > 0.0 { size } else { 1.0 },
                 unit: 1.0 / n.sqrt(),
                 squares: Vec::new(),
-                spins: spins(system, part),
             }
         });
         let mut rigid = Rigid {
             system,
-            parts,
+            pieces,
             modes: modes(dim, system.axisymmetric),
             frames: frames.collect(),
             places,
+            amplitudes: system.unknowns.amplitudes().collect(),
         };
-        for (k, part) in parts.iter().enumerate() {
+        for (k, piece) in pieces.iter().enumerate() {
             let mut squares = vec![0.0; rigid.modes.len()];
-            for (_, values) in part.clone().filter_map(|unknown| rigid.at(unknown)) {
+            let unknowns = piece.unknowns.iter();
+            for (_, values) in unknowns.filter_map(|&unknown| rigid.at(unknown)) {
                 for (square, value) in squares.iter_mut().zip(values) {
                     *square += value * value;
                 }
@@ -89,37 +109,52 @@ impl<'a> Rigid<'a> {
         rigid
     }
 
-    /// Number of the first coordinate that moves an unknown and the values of the motions of its part there; none of a part
-    /// that does not float.
+    /// Number of the first coordinate that moves an unknown and the values of the motions of its piece there; none of an unknown in no
+    /// piece.
     fn at(&self, unknown: usize) -> Option<(usize, impl Iterator<Item = f64> + '_)> {
-        let part = self.part_of(unknown)?;
-        let frame = &self.frames[part];
+        let piece = self.pieces.of(unknown)?;
+        let frame = &self.frames[piece];
         let unknowns = &self.system.unknowns;
         let node = unknowns.node(unknown);
-        let (turns, i) = match unknowns.kind(unknown) {
-            Kind::Translation(axis) => (false, axis),
-            Kind::Rotation(axis) if unknowns.frame(node).is_none() => (true, axis),
+        let kind = unknowns.kind(unknown);
+        let amplitude = match kind {
             // finite rotations are not linear in the coordinates
-            Kind::Rotation(_) | Kind::Amplitude(_) => return None,
+            Kind::Rotation(_) if unknowns.frame(node).is_some() => return None,
+            Kind::Translation(_) | Kind::Rotation(_) => None,
+            Kind::Amplitude(_) => Some(*self.amplitudes.get(&unknown)?),
         };
         let place = &self.places[node as usize];
-        let x = [0, 1, 2].map(|j| (place[j] - frame.centre[j]) / frame.size);
-        let values = self.modes.iter().map(move |mode| match turns {
-            false => frame.unit * mode.1(&x)[i],
-            true => frame.unit / frame.size * turn_of(mode)[i],
+        let values = self.modes.iter().map(move |mode| match amplitude {
+            None => frame.value(mode, (place, kind)),
+            Some(of) => frame.unit * of_amplitude(mode, (&frame.centre, frame.size), of),
         });
-        Some((part * self.modes.len(), values))
+        Some((piece * self.modes.len(), values))
     }
 
-    /// The part of an unknown; none of one that does not float.
-    pub(super) fn part_of(&self, unknown: usize) -> Option<usize> {
-        let part = self.parts.partition_point(|part| part.end <= unknown);
-        self.parts.get(part)?.contains(&unknown).then_some(part)
+    /// Rows on the motions of what supports hold inside reduced bodies.
+    pub(super) fn held_inside(&self) -> impl Iterator<Item = Vec<f64>> + '_ {
+        let bodies = self.system.bodies.iter().filter_map(Body::as_reduced);
+        bodies.flat_map(move |body| {
+            let mut unknowns = body.unknowns().iter();
+            let piece = unknowns.find_map(|unknown| self.pieces.of(*unknown as usize));
+            let held = piece.into_iter().flat_map(move |piece| {
+                let held = held_inside(self.system, body);
+                held.map(move |of| (piece, of))
+            });
+            held.map(move |(piece, (node, kind))| {
+                let (frame, place) = (&self.frames[piece], &self.places[node as usize]);
+                let mut row = vec![0.0; self.pieces.len() * self.modes.len()];
+                for (value, mode) in row[self.coordinates(piece)].iter_mut().zip(&self.modes) {
+                    *value = frame.value(mode, (place, kind));
+                }
+                row
+            })
+        })
     }
 
     /// Σ f_i r_j(i) by coordinate j of unknowns i and their values f.
     pub(super) fn of(&self, terms: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
-        let mut sums = vec![0.0; self.parts.len() * self.modes.len()];
+        let mut sums = vec![0.0; self.pieces.len() * self.modes.len()];
         for (unknown, f) in terms {
             if let Some((first, values)) = self.at(unknown) {
                 for (sum, value) in sums[first..].iter_mut().zip(values) {
@@ -130,9 +165,29 @@ impl<'a> Rigid<'a> {
         sums
     }
 
+    /// The same of a row that may hold the motions: zero where all of it is what rounding leaves of its terms, as of a spring between two
+    /// nodes of one piece.
+    pub(super) fn row(&self, terms: impl IntoIterator<Item = (usize, f64)>) -> Vec<f64> {
+        let mut row = vec![0.0; self.pieces.len() * self.modes.len()];
+        let mut sizes = row.clone();
+        for (unknown, f) in terms {
+            if let Some((first, values)) = self.at(unknown) {
+                let sums = row[first..].iter_mut().zip(&mut sizes[first..]);
+                for ((sum, size), value) in sums.zip(values) {
+                    *sum += f * value;
+                    *size += (f * value).abs();
+                }
+            }
+        }
+        if norm(&row) <= ROUNDING * norm(&sizes) {
+            row.fill(0.0);
+        }
+        row
+    }
+
     /// Coordinates of the rigid motion that is nearest to a motion of all unknowns.
     pub(super) fn nearest(&self, dx: &[f64]) -> Vec<f64> {
-        let unknowns = self.parts.iter().flat_map(Range::clone);
+        let unknowns = self.pieces.unknowns();
         let mut c = self.of(unknowns.map(|unknown| (unknown, dx[unknown])));
         let squares = self.frames.iter().flat_map(|frame| &frame.squares);
         for (c, square) in c.iter_mut().zip(squares) {
@@ -142,31 +197,30 @@ impl<'a> Rigid<'a> {
     }
 
     /// A row of contact on the motions.
-    pub(super) fn row(&self, rows: &Rows, point: usize) -> Vec<f64> {
+    pub(super) fn contact_row(&self, rows: &Rows, point: usize) -> Vec<f64> {
         let (unknowns, coefficients) = rows.row(point);
         let unknowns = unknowns.iter().map(|&unknown| unknown as usize);
-        self.of(unknowns.zip(coefficients.iter().copied()))
+        self.row(unknowns.zip(coefficients.iter().copied()))
     }
 
     /// Unknowns and their displacements in a motion.
     pub(super) fn motion(&self, c: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
         let c = c.to_vec();
-        let unknowns = self.parts.iter().flat_map(Range::clone);
-        unknowns.filter_map(move |unknown| {
+        self.pieces.unknowns().filter_map(move |unknown| {
             let (first, values) = self.at(unknown)?;
             Some((unknown, values.zip(&c[first..]).map(|(v, c)| v * c).sum()))
         })
     }
 
-    /// Unknowns and what the finite turns of a motion add to its displacements.
+    /// Unknowns and what the finite turns of pieces in a motion add to its displacements.
     pub(super) fn arc(&self, c: &[f64]) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let turns: Vec<[f64; 3]> = (0..self.parts.len()).map(|k| self.angle(k, c)).collect();
-        let parts = self.parts.iter().enumerate();
-        let spinning = parts.filter(|(k, _)| self.frames[*k].spins);
-        spinning.flat_map(move |(k, part)| {
+        let turns: Vec<[f64; 3]> = (0..self.pieces.len()).map(|k| self.angle(k, c)).collect();
+        let pieces = self.pieces.iter().enumerate();
+        let spinning = pieces.filter(|(_, piece)| piece.spins);
+        spinning.flat_map(move |(k, piece)| {
             let (frame, turn) = (&self.frames[k], turns[k]);
             let unknowns = &self.system.unknowns;
-            part.clone().filter_map(move |unknown| {
+            piece.unknowns.iter().filter_map(move |&unknown| {
                 let Kind::Translation(axis) = unknowns.kind(unknown) else {
                     return None;
                 };
@@ -177,11 +231,11 @@ impl<'a> Rigid<'a> {
         })
     }
 
-    /// Turn of a part in a motion, a vector along its axis, rad.
-    fn angle(&self, part: usize, c: &[f64]) -> [f64; 3] {
-        let (count, frame) = (self.modes.len(), &self.frames[part]);
+    /// Turn of a piece in a motion, a vector along its axis, rad.
+    fn angle(&self, piece: usize, c: &[f64]) -> [f64; 3] {
+        let (count, frame) = (self.modes.len(), &self.frames[piece]);
         let mut angle = [0.0; 3];
-        for (c, mode) in c[part * count..].iter().zip(&self.modes) {
+        for (c, mode) in c[piece * count..].iter().zip(&self.modes) {
             for (angle, axis) in angle.iter_mut().zip(turn_of(mode)) {
                 *angle += c * axis * frame.unit / frame.size;
             }
@@ -189,24 +243,24 @@ impl<'a> Rigid<'a> {
         angle
     }
 
-    /// Largest displacement of a node of a part in a motion, m.
-    pub(super) fn reach(&self, part: usize, c: &[f64]) -> f64 {
+    /// Largest displacement of a node of a piece in a motion, m.
+    pub(super) fn reach(&self, piece: usize, c: &[f64]) -> f64 {
         let of = |unknown: usize| -> f64 {
             let moved = self
                 .at(unknown)
                 .map(|(first, values)| values.zip(&c[first..]).map(|(v, c)| v * c).sum::<f64>());
             moved.unwrap_or(0.0)
         };
-        let nodes = self.system.nodes_of(&self.parts[part]);
-        let unknowns = |node| self.system.unknowns.translations_of(node as u32);
+        let nodes = self.pieces[piece].nodes.iter();
+        let unknowns = |node: &u32| self.system.unknowns.translations_of(*node);
         let lengths = nodes.map(|node| unknowns(node).map(|i| of(i).powi(2)).sum::<f64>());
         lengths.fold(0.0, f64::max).sqrt()
     }
 
-    /// The coordinates of a part.
-    pub(super) fn coordinates(&self, part: usize) -> Range<usize> {
+    /// The coordinates of a piece.
+    pub(super) fn coordinates(&self, piece: usize) -> Range<usize> {
         let count = self.modes.len();
-        part * count..(part + 1) * count
+        piece * count..(piece + 1) * count
     }
 
     /// Largest turn in a motion, rad.
@@ -223,46 +277,37 @@ impl<'a> Rigid<'a> {
         turns.fold(0.0, f64::max)
     }
 
-    /// The part that moves most, and how.
-    pub(super) fn name(&self, c: &[f64]) -> (&Range<usize>, &'static str) {
+    /// The piece that moves most, and how.
+    pub(super) fn name(&self, c: &[f64]) -> (&Piece, &'static str) {
         let most = (0..c.len()).fold(0, |most, j| match c[j].abs() > c[most].abs() {
             true => j,
             false => most,
         });
         let count = self.modes.len();
-        (&self.parts[most / count], self.modes[most % count].0)
+        (&self.pieces[most / count], self.modes[most % count].0)
     }
 
-    /// Turns of the parts by finite angles that are those of a motion: nodes with finite rotations, and the angle of each in space, rad.
+    /// Turns of the pieces by finite angles that are those of a motion: nodes with finite rotations, and the angle of each in space, rad.
     pub(super) fn turns(&self, c: &[f64]) -> impl Iterator<Item = (u32, [f64; 3])> + '_ {
-        let angles: Vec<[f64; 3]> = (0..self.parts.len()).map(|k| self.angle(k, c)).collect();
+        let angles: Vec<[f64; 3]> = (0..self.pieces.len()).map(|k| self.angle(k, c)).collect();
         let unknowns = &self.system.unknowns;
         unknowns.turning().iter().filter_map(move |&node| {
-            let part = self.part_of(unknowns.first(node))?;
-            Some((node, angles[part]))
+            let piece = self.pieces.of(unknowns.first(node))?;
+            Some((node, angles[piece]))
         })
     }
 }
 
-/// Whether a part turns by finite angles.
-fn spins(system: &System, part: &Range<usize>) -> bool {
-    let mut bodies = system.bodies.iter().zip(&system.body_masses);
-    let inside = |node: u32| part.contains(&system.unknowns.first(node));
-    let stiff = bodies.any(|(body, masses)| {
-        !body.has_finite_motion() && masses.first().is_some_and(|&(node, _)| inside(node))
-    });
-    !stiff && !part.clone().any(|unknown| system.fixed[unknown])
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }
 
 /// (exp(θ×) - 1 - θ×) d.
 fn beyond_linear(turn: &[f64; 3], from: &[f64; 3]) -> [f64; 3] {
-    let cross = |a: &[f64; 3], b: &[f64; 3]| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
     let once = cross(turn, from);
     let twice = cross(turn, &once);
     let angle = norm(turn);
@@ -328,6 +373,28 @@ pub(super) fn turn_of((_, shape): &Mode) -> [f64; 3] {
     }
     let [of_x, of_y, of_z] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|e| shape(&e));
     [of_y[2], of_z[0], of_x[1]]
+}
+
+/// The part of an amplitude in a motion of places relative to a centre over a size (m): a turn about the centre is one about the origin
+/// less the way of the centre in it.
+pub(super) fn of_amplitude(
+    mode: &Mode,
+    (centre, size): (&[f64; 3], f64),
+    amplitude: &Amplitude,
+) -> f64 {
+    let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let (turn, shift) = (turn_of(mode), mode.1(&[0.0; 3]));
+    let way = dot(&cross(&turn, centre), &amplitude.translation);
+    dot(&shift, &amplitude.translation) + (dot(&turn, &amplitude.rotation) - way) / size
+}
+
+/// What supports hold of the nodes that a reduced body has not retained.
+pub(super) fn held_inside<'a>(
+    system: &'a System,
+    body: &'a Reduced,
+) -> impl Iterator<Item = (u32, Kind)> + 'a {
+    let held = body.reduction().held.iter();
+    held.map(|&(node, kind)| (system.number[node as usize], kind))
 }
 
 pub(super) fn modes(dim: usize, axisymmetric: bool) -> Vec<Mode> {

@@ -12,6 +12,7 @@ use carom_contact::Search;
 
 use super::Driver;
 use super::mixing::{LARGEST, LARGEST_OF_FLOATING};
+use super::pieces::Pieces;
 use super::refine::WITHIN;
 use super::residual::Standing;
 use super::rigid::Rigid;
@@ -403,7 +404,8 @@ impl Driver {
         let motion = &self.state.motion;
         // explicit zones have their place already
         let factor = |i: usize| self.maps.of(i).displacement.x;
-        let rigid = Rigid::new(&system, &system.parts, Some(&motion.u));
+        let parts = Pieces::of_parts(&system);
+        let rigid = Rigid::new(&system, &parts, Some(&motion.u));
         let mut c = rigid.nearest(&motion.v);
         c.iter_mut().for_each(|c| *c *= self.dt);
         let vectors = &mut self.vectors;

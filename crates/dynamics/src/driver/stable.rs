@@ -143,8 +143,11 @@ impl Driver {
             return Ok(dt);
         };
         let most = f64::min(1.0, fraction / PART) * self.stable_step();
-        // a step much larger than the last feeds energy to the fastest waves: one rung at a time
-        let last = (RUNGS * (dt / self.state.control.taken).log2()).round();
+        // a step much larger than the last feeds energy to the fastest waves: one rung at a time; those of a static stage move none
+        let last = match self.state.step > self.system.static_steps() {
+            true => (RUNGS * (dt / self.state.control.taken).log2()).round(),
+            false => 0.0,
+        };
         // equal but for rounding
         let rungs = (RUNGS * (dt / most).log2() - 1e-9)
             .ceil()

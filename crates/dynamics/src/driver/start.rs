@@ -60,7 +60,8 @@ impl Driver {
         Driver::begun(system, None)
     }
 
-    fn begun(system: Arc<System>, direct: Option<Direct>) -> Result<Driver, Error> {
+    fn begun(released: Arc<System>, direct: Option<Direct>) -> Result<Driver, Error> {
+        let system = Arc::clone(released.staged.as_ref().unwrap_or(&released));
         let (n, points) = (system.unknowns(), system.points());
         let zeros = || vec![0.0; n];
         let scheme = system.scheme.get();
@@ -95,7 +96,7 @@ impl Driver {
             ahead: system.dt,
             unplanned: None,
             impulses: match staged {
-                true => Some(Impulses::new(&system)?),
+                true => Some(Impulses::new(&released)?),
                 false => None,
             },
             projected: Projected::new(points),
@@ -156,6 +157,10 @@ impl Driver {
             left_over: 0.0,
             phases: Phases::default(),
             earlier: Costs::default(),
+            released: match Arc::ptr_eq(&system, &released) {
+                true => None,
+                false => Some(released),
+            },
             system,
         };
         let system = Arc::clone(&driver.system);
@@ -489,12 +494,23 @@ impl Driver {
         left <= tolerance * tolerance * size
     }
 
+    /// Lets go of the bodies that have waited for the dynamics.
+    fn release(&mut self) {
+        if let Some(released) = self.released.take() {
+            self.system = released;
+            self.effective.forget();
+        }
+    }
+
     /// At the end of the static stage bodies are given their velocities, and the balance begins anew.
     pub(super) fn begin_stage(&mut self) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
-        let Some(preload) = system.nonlinear.preload else {
+        let Some(preload) = self.system.nonlinear.preload else {
             return Ok(());
         };
+        if self.state.step >= preload.steps {
+            self.release();
+        }
+        let system = Arc::clone(&self.system);
         if self.state.step != preload.steps || self.state.motion.v.iter().any(|v| *v != 0.0) {
             return Ok(());
         }

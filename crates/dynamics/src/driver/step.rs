@@ -35,7 +35,7 @@ impl Driver {
             return Ok(());
         };
         self.renew_stable(self.state.control.dt)?;
-        let control = self.state.control;
+        let control = self.control();
         let first = self.unplanned.take().unwrap_or(control.dt);
         let forced = self.is_forced();
         let (mut control, attempts) = adapt(self, (control, first), (rules, system.dt), forced)?;
@@ -55,10 +55,11 @@ impl Driver {
         let size = self.size_of_step(planned)?;
         let end = self.end_of_step(size);
         let whole = self.stable_level(end - first)?;
-        let mut control = self.state.control;
+        let mut control = self.control();
         let (mut done, mut level) = (0u64, whole);
         // a cause that an attempt has named says more than the end of the last one
         let mut unheld: Option<Error> = None;
+        let mut indefinite = false;
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
         let most = self.most_halvings();
@@ -92,6 +93,7 @@ impl Driver {
                 }
                 Err(error) if level < most => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
+                    indefinite |= is_indefinite(&error);
                     if matches!(error, Error::Unheld { .. }) {
                         unheld.get_or_insert(error);
                     }
@@ -103,7 +105,14 @@ impl Driver {
                         self.state = start;
                         self.leave_direct();
                     }
-                    return Err(unheld.unwrap_or(error));
+                    indefinite |= is_indefinite(&error);
+                    let error = unheld.unwrap_or(error);
+                    return Err(match indefinite && self.is_static() && !self.floats() {
+                        true => Error::Unstable {
+                            cause: Box::new(error),
+                        },
+                        false => error,
+                    });
                 }
             }
         }
@@ -114,6 +123,15 @@ impl Driver {
         self.report.join_parts();
         self.accept(control, size);
         Ok(())
+    }
+
+    /// What the control remembers: of the sizes of steps those of the dynamics alone, once these have begun.
+    fn control(&self) -> Control {
+        let mut control = self.state.control;
+        if self.state.step == self.system.static_steps() {
+            control.range = [0.0; 2];
+        }
+        control
     }
 
     /// Times that a step of fixed size may be halved: none where all of it is linear, whose failures have other causes.
@@ -170,6 +188,18 @@ impl Driver {
         let next = self.state.step + 1;
         self.forced.is_some_and(|every| next.is_multiple_of(every))
     }
+}
+
+/// Whether a matrix was not positive definite.
+fn is_indefinite(error: &Error) -> bool {
+    use carom_algebra::Error::NotPositiveDefinite;
+    matches!(
+        error,
+        Error::Factor {
+            cause: NotPositiveDefinite { .. },
+            ..
+        }
+    )
 }
 
 impl Attempts for Driver {

@@ -39,7 +39,7 @@ fn made(name: String, cell: carom_mesh::ElementId, kind: DiscreteKind) -> ModelD
 }
 
 /// Adds a spring or a dashpot between nodes, or a node and the ground.
-fn link(
+pub(crate) fn link(
     model: &mut Model,
     nodes: &[u32],
     kind: fn(Link) -> DiscreteKind,
@@ -198,6 +198,25 @@ fn a_mass_hangs_at_rest_on_a_spring_in_a_static_stage() {
     let found = run.state().motion.u[1] / down[1];
     assert!((found - (0.1 + 10.0 / 300.0)).abs() < 1e-12, "{found}");
     assert_eq!(run.state().motion.u[0], 0.0);
+}
+
+/// A spring that gives way beyond 10 N: the fourth part of 12 N has no equilibrium, and the stiffness beyond is negative.
+#[test]
+fn a_static_stage_tells_that_it_has_come_to_a_limit_point() {
+    let mut model = empty(1, TRAPEZOID, 1e-3);
+    let node = mass(&mut model, 2.0, [0.0; 3], [0.0; 3]);
+    let weak = Curve::new(vec![[0.0, 0.0], [0.1, 10.0], [0.2, 5.0]]).unwrap();
+    let along = Some([1.0, 0.0, 0.0]);
+    link(&mut model, &[node], DiscreteKind::Spring, (weak, along));
+    model.gravity = [-6.0, 0.0, 0.0];
+    model.nonlinear.preload = Some(Preload { end: 1.0, steps: 4 });
+    let mut run = Driver::new(System::new(model).unwrap()).unwrap();
+    for _ in 0..3 {
+        run.step().unwrap();
+    }
+    let error = run.step().unwrap_err();
+    assert!(matches!(error, Error::Unstable { .. }), "{error}");
+    assert!(error.to_string().contains("limit point"), "{error}");
 }
 
 #[test]

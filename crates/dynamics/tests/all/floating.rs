@@ -1,5 +1,6 @@
 //! Static stages of bodies that only contacts hold.
 
+use carom_bodies::{Curve, DiscreteKind};
 use carom_contact::law::{Capture, Displacement, Reading, Velocity};
 use carom_contact::{Integration, Law, Plane, Sliding};
 use carom_dynamics::{
@@ -9,6 +10,7 @@ use carom_dynamics::{
 use carom_materials::{Elastic, Law as Material, NeoHooke};
 use carom_mesh::{Surface, generate};
 
+use crate::discrete::link;
 use crate::newton::{SOFT, square};
 
 const DISPLACEMENT: Law = Law::Displacement(Displacement { projection: false });
@@ -263,4 +265,140 @@ fn blocks_that_only_touch_each_other_and_the_ground_carry_a_load_down() {
         assert!((ground - WEIGHT - upper).abs() < 1e-8, "{ground}");
         assert!(newton.residuals().len() <= 20, "{:?}", newton.residuals());
     }
+}
+
+/// A square on a clamped one, of two by two cells each, in one body or in two; nothing but their contact keeps them apart.
+fn stacked(material: Material, sliding: Sliding, one_body: bool) -> Model {
+    let mut model = square(TRAPEZOID, VELOCITY, material, 2);
+    model.bodies[0].velocity = [0.0; 3];
+    model.gravity = [0.0; 3];
+    let upper = generate::rectangle("b", [0.0, 1.0], [1.0, 1.0], [2, 2], false);
+    model.mesh.merge("b", upper).unwrap();
+    let lower = model.bodies[0].spec.cells.clone();
+    let upper = model.mesh.groups["b"].elements.clone();
+    let surface = |group: &str, cells: &[_]| {
+        Surface::new(&model.mesh, &model.mesh.groups[group], cells).unwrap()
+    };
+    model.contacts[0].secondary = surface("b.bottom", &upper);
+    model.contacts[0].primary = ModelTarget::Surface(surface("a.top", &lower));
+    model.contacts[0].sliding = sliding;
+    let held = |nodes: Vec<u32>, fix: [bool; 3]| Support {
+        nodes,
+        fix,
+        fix_rotations: [false; 3],
+    };
+    let bottom = model.mesh.group_nodes(&model.mesh.groups["a.bottom"]);
+    let side = node_at(&model, [0.0, 1.5], 9);
+    model.supports = vec![
+        held(bottom, [true; 3]),
+        held(vec![side], [true, false, false]),
+    ];
+    match one_body {
+        true => model.bodies[0].spec.cells.extend(upper),
+        false => {
+            let mut body = model.bodies[0].clone();
+            body.spec.name = "b".into();
+            body.spec.cells = upper;
+            model.bodies.push(body);
+        }
+    }
+    model.nonlinear.preload = Some(Preload { end: 1.0, steps: 2 });
+    model
+}
+
+/// The node at a place, from a number on.
+fn node_at(model: &Model, place: [f64; 2], first: u32) -> u32 {
+    let nodes = model.mesh.nodes.iter().zip(0..);
+    let mut nodes = nodes.filter(|&(_, node)| node >= first);
+    let is_there = |x: &[f64; 3]| (0..2).all(|i| (x[i] - place[i]).abs() < 1e-9);
+    nodes.find(|(x, _)| is_there(x)).unwrap().1
+}
+
+/// Two plates and a bolt: the spring holds its direction, and the turn about its end is for the contact alone to hold.
+#[test]
+fn plates_that_a_preloaded_spring_presses_together_find_their_equilibrium() {
+    let up = [0.0, 1.0, 0.0];
+    // 0.01 N at no elongation, on squares of E A = 4 N
+    let bent = Curve::new(vec![[-0.02, 0.0], [0.0, 0.01], [0.02, 0.03]]).unwrap();
+    for material in [COLUMN.into(), neo_hooke()] {
+        for (sliding, curve, pushed) in [
+            (Sliding::Small, bent.clone(), false),
+            (Sliding::Finite, bent.clone(), false),
+            (Sliding::Finite, Curve::line(0.5), true),
+        ] {
+            let mut model = stacked(material, sliding, false);
+            let ends = [([0.5, 0.0], 0), ([0.5, 2.0], 9)];
+            let ends = ends.map(|(place, first)| node_at(&model, place, first));
+            let spring = (curve.clone(), Some(up));
+            link(&mut model, &ends, DiscreteKind::Spring, spring);
+            let load = if pushed { 0.01 } else { 0.0 };
+            if pushed {
+                let cells = &model.bodies[1].spec.cells;
+                let top = &model.mesh.groups["b.top"];
+                // on a thickness of 0.5
+                let push = Load {
+                    name: "push".into(),
+                    surface: Surface::new(&model.mesh, top, cells).unwrap(),
+                    kind: LoadKind::Traction([0.0, -load / 0.5, 0.0]),
+                    amplitude: Amplitude::constant(1.0),
+                };
+                model.nonlinear.loads = vec![push];
+            }
+            let newton = pressed(model).unwrap();
+            assert!(newton.residuals().len() <= 20, "{:?}", newton.residuals());
+            let (system, u) = (newton.system(), &newton.state().motion.u);
+            let [nut, head] =
+                ends.map(|node| system.unknowns.vector(system.number[node as usize], u)[1]);
+            let pull = match pushed {
+                true => 0.5 * (head - nut),
+                // slope of 0.5 below no elongation: the plates are shorter than without the bolt
+                false => 0.01 + 0.5 * (head - nut),
+            };
+            assert!(head < nut);
+            let force = newton.report().contacts[0].force;
+            // iterations end at 1e-10 of the forces, the largest of which are those inside
+            assert!(
+                (force - pull - load).abs() < 1e-9 * (pull.abs() + load),
+                "{force} {pull}"
+            );
+        }
+    }
+}
+
+/// A body of two pieces is in one part of the model, and its pieces move apart all the same.
+#[test]
+fn a_piece_of_a_body_rests_on_another_piece_of_it() {
+    let forces = [true, false].map(|one_body| {
+        let mut model = stacked(COLUMN.into(), Sliding::Small, one_body);
+        model.gravity = [0.0, -0.1, 0.0];
+        let newton = pressed(model).unwrap();
+        newton.report().contacts[0].force
+    });
+    for force in forces {
+        // the weight of the upper square; iterations end at 1e-10 of the forces
+        assert!((force / WEIGHT - 1.0).abs() < 1e-9, "{forces:?}");
+    }
+}
+
+/// The bolt holds its direction and the support the other: without contact ahead the plate would turn about the bolt.
+#[test]
+fn a_plate_that_a_load_turns_about_its_bolt_is_named() {
+    let mut model = stacked(COLUMN.into(), Sliding::Finite, false);
+    let ends = [([0.5, 0.0], 0), ([0.5, 2.0], 9)];
+    let ends = ends.map(|(place, first)| node_at(&model, place, first));
+    let spring = (Curve::line(0.5), Some([0.0, 1.0, 0.0]));
+    link(&mut model, &ends, DiscreteKind::Spring, spring);
+    // no contact on the side to which it turns
+    let cells = model.bodies[1].spec.cells.clone();
+    let left = carom_mesh::Group::new(1, model.mesh.groups["b.bottom"].elements[..1].to_vec());
+    model.contacts[0].secondary = Surface::new(&model.mesh, &left, &cells).unwrap();
+    let side = &model.mesh.groups["b.right"];
+    let push = Load {
+        name: "push".into(),
+        surface: Surface::new(&model.mesh, side, &cells).unwrap(),
+        kind: LoadKind::Traction([0.0, -0.02, 0.0]),
+        amplitude: Amplitude::constant(1.0),
+    };
+    model.nonlinear.loads = vec![push];
+    assert_eq!(refusal(model), "1 b: turn about z");
 }

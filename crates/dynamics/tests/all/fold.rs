@@ -42,8 +42,8 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
 }
 
 /// A block whose lower side has a tip, over one whose upper side has a fold of this depth 1 m away from either end; the top of
-/// the first comes down by `way` in a static step.
-fn pressed(depth: f64, way: f64) -> Driver {
+/// the first comes down by `way` in a static step. `sight`: depth of penetrations that count, m, and whether near points alone are looked for.
+fn pressed([depth, way]: [f64; 2], sight: (Option<f64>, bool)) -> Driver {
     let mut mesh = generate::rectangle("b", [-1.0, -1.0], [2.0, 1.0], [2, 1], false);
     let upper = generate::rectangle("a", [BESIDE - 0.5, 0.0], [1.0; 2], [2, 1], false);
     mesh.merge("a", upper).unwrap();
@@ -74,9 +74,9 @@ fn pressed(depth: f64, way: f64) -> Driver {
             massless: false,
             friction: 0.0,
             initial: Initial::Keep,
-            depth: None,
+            depth: sight.0,
             moment_about: None,
-            near_only: false,
+            near_only: sight.1,
             merge_within: None,
             parts: None,
         }],
@@ -114,8 +114,15 @@ fn pressed(depth: f64, way: f64) -> Driver {
 
 #[test]
 fn a_node_in_a_flat_fold_stays_with_one_face() {
+    // as in a contact between two surfaces, and in the general contact, where points have a sight and far ones are left out
+    for sight in [(None, false), (Some(0.5), false), (Some(0.5), true)] {
+        stays_with_one_face(sight);
+    }
+}
+
+fn stays_with_one_face(sight: (Option<f64>, bool)) {
     let (depth, way) = (0.02, 0.01);
-    let mut newton = pressed(depth, way);
+    let mut newton = pressed([depth, way], sight);
     newton.step().unwrap();
     let (system, state) = (newton.system(), newton.state());
     assert_eq!(newton.report().attempts, 1, "no part of the step is needed");
@@ -141,10 +148,12 @@ fn a_node_in_a_flat_fold_stays_with_one_face() {
 
 #[test]
 fn a_node_that_slides_through_a_steep_fold_is_told() {
-    let error = pressed(0.5, 0.2).step().unwrap_err();
-    assert!(matches!(error, Error::Equilibrium { .. }));
-    assert!(
-        error.to_string().contains("slides through the fold"),
-        "{error}"
-    );
+    for sight in [(None, false), (Some(0.5), false), (Some(0.5), true)] {
+        let error = pressed([0.5, 0.2], sight).step().unwrap_err();
+        assert!(matches!(error, Error::Equilibrium { .. }));
+        assert!(
+            error.to_string().contains("slides through the fold"),
+            "{error}"
+        );
+    }
 }

@@ -7,6 +7,7 @@ use minijinja::{Value, context};
 use crate::compare::figures::{figures, page};
 use crate::compare::{Comparison, Standard, columns};
 use crate::page::{PROGRAM, STYLE};
+use crate::plot::unless_empty;
 use crate::report::environment;
 use crate::table::{Table, write_csv};
 use crate::{Absent, Error, Folder, atomic};
@@ -35,7 +36,9 @@ impl Comparison {
         write_csv(&folder.file("comparison.csv")?, &columns::names(), &rows)?;
         let mut drawn = Vec::new();
         for (name, figure) in figures(self) {
-            let svg = figure?;
+            let Some(svg) = unless_empty(figure)? else {
+                continue;
+            };
             atomic::write_text(&folder.file(name)?, &svg)?;
             drawn.push(svg);
         }

@@ -58,16 +58,29 @@ impl Figure<'_> {
     ///
     /// A panel with `clip` set shows the range from the 1st to the 99th percentile of its computed curves (and all
     /// of the exact ones) if the full range is more than 1.6 times that; how many samples lie beyond, and the
-    /// farthest of them, is then written over the panel.
+    /// farthest of them, is then written over the panel. A panel without data is left out.
     ///
     /// # Errors
     /// [`Error::CurveLength`], [`Error::NotFinite`], [`Error::Backwards`] for a curve that cannot be drawn;
-    /// [`Error::EmptyPanel`]; [`Error::Drawing`] if the drawing library fails.
+    /// [`Error::EmptyPanel`] if no panel has data; [`Error::Drawing`] if the drawing library fails.
     pub fn svg(&self) -> Result<String, Error> {
         for panel in &self.panels {
             panel.check()?;
         }
-        draw(self)
+        let with_data = self.panels.iter().filter(|panel| panel.has_data());
+        let panels: Vec<Panel> = with_data.cloned().collect();
+        if panels.is_empty() {
+            let first = self.panels.first();
+            let panel = first.map_or(&self.title, |panel| &panel.title);
+            return Err(Error::EmptyPanel {
+                panel: panel.clone(),
+            });
+        }
+        draw(&Figure {
+            title: self.title.clone(),
+            panels,
+            ..*self
+        })
     }
 
     /// Writes the figure as one `.svg` file, whole or not at all.

@@ -62,12 +62,11 @@ pub enum Role {
 
 impl Panel<'_> {
     pub(super) fn check(&self) -> Result<(), Error> {
-        if self.curves.iter().all(|curve| curve.x.is_empty()) {
-            return Err(Error::EmptyPanel {
-                panel: self.title.clone(),
-            });
-        }
         self.curves.iter().try_for_each(Curve::check)
+    }
+
+    pub(super) fn has_data(&self) -> bool {
+        self.curves.iter().any(|curve| !curve.x.is_empty())
     }
 }
 

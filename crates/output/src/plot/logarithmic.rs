@@ -92,7 +92,8 @@ impl Logarithmic {
             .y_label_formatter(&|value| tick(*value))
             .draw()?;
         let colours = COMPUTED.into_iter().cycle();
-        for (k, (series, colour)) in self.series.iter().zip(colours).enumerate() {
+        let drawn = self.series.iter().filter(|series| series.is_shown());
+        for (k, (series, colour)) in drawn.zip(colours).enumerate() {
             let plot = chart.plotting_area();
             if let Some((exponent, factor)) = series.law {
                 let ends = [left, right].map(|x| (x, factor * x.powf(exponent)));
@@ -114,6 +115,11 @@ impl Logarithmic {
 }
 
 impl Series {
+    /// Whether it has a point that can be shown.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.shown().next().is_some()
+    }
+
     fn shown(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let positive = |v: f64| v > 0.0 && v.is_finite();
         let points = self.points.iter().copied();
@@ -157,6 +163,14 @@ mod tests {
         let svg = svg.svg().unwrap();
         assert_eq!(svg.matches("<circle").count(), 2);
         assert!(svg.contains("impulse, order 1.00"));
+        // a series of which nothing is shown has no name in the legend
+        let mut beside = figure(vec![(1.0, 1.0)]);
+        beside.series.push(Series {
+            name: "at rest".to_owned(),
+            points: vec![(1.0, 0.0)],
+            law: None,
+        });
+        assert!(!beside.svg().unwrap().contains("at rest"));
         let nothing = figure(vec![(1.0, -1.0)]).svg();
         assert!(matches!(nothing, Err(Error::EmptyPanel { .. })));
     }

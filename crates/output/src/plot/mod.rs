@@ -22,3 +22,16 @@ pub(crate) use model::{Shape, model_figure};
 pub use scale::{digits, quantity, rounded, scientific};
 pub(crate) use structure::{Lines, structure_figure};
 pub(crate) use thin::thin;
+
+use crate::Error;
+
+/// A figure that was drawn; none without anything to draw, which is left out and ends no run.
+///
+/// # Errors
+/// Another one of the figure.
+pub(crate) fn unless_empty(figure: Result<String, Error>) -> Result<Option<String>, Error> {
+    match figure {
+        Err(Error::EmptyPanel { .. }) => Ok(None),
+        other => other.map(Some),
+    }
+}

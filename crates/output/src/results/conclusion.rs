@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use carom_dynamics::{ContactRecord, Ledger, System};
 
-use crate::plot::{Logarithmic, model_figure};
+use crate::plot::{Logarithmic, model_figure, unless_empty};
 use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
 use crate::results::film::film;
@@ -103,7 +103,7 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> (Vec<String>, Option<
     let drawn = drawn.chain(instants).chain(drawn_spectra);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
-        let Some(svg) = keep(figure, errors) else {
+        let Some(svg) = keep(unless_empty(figure), errors).flatten() else {
             continue;
         };
         let path = results.folder.file(name);

@@ -7,7 +7,7 @@ use carom_dynamics::{ContactRecord, Impact, NoRestitution};
 
 use crate::results::impacts::ContactTotals;
 use crate::results::{LevelSettings, Results};
-use crate::statistics::{Level, Statistics};
+use crate::statistics::{Level, Statistics, takes_energy};
 use crate::summary::{Contact, Friction};
 
 /// Each contact by its name.
@@ -118,7 +118,9 @@ pub(crate) fn levels(results: &Results) -> BTreeMap<String, Level> {
         let loss = losses
             .map(ContactRecord::friction_loss)
             .fold(0.0, |a, b| a + b);
-        let of = Level::of(&level.contacts, &impacts, name, (loss, level.allowable));
+        let takes = |contact: usize| takes_energy(&results.system, contact);
+        let allowed = (loss, level.allowable);
+        let of = Level::of(&level.contacts, &impacts, name, allowed, takes);
         (level.name.clone(), of)
     };
     results.settings.levels.iter().map(one).collect()

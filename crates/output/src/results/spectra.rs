@@ -80,7 +80,7 @@ impl Spectra {
         }
     }
 
-    /// Writes `spectra.csv`; the figure, if there is a spectrum.
+    /// Writes `spectra.csv`; the figure, if there is a spectrum that is not zero.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -119,6 +119,11 @@ impl Spectra {
             return Ok(None);
         }
         self.table(folder, &names, &series)?;
+        // zeros have no logarithm: a probe at rest is in the table alone
+        series.retain(Series::is_shown);
+        if series.is_empty() {
+            return Ok(None);
+        }
         Ok(Some(Logarithmic {
             title: "Response spectra of absolute accelerations".to_owned(),
             abscissa: "frequency (Hz)".to_owned(),

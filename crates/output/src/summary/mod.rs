@@ -127,9 +127,9 @@ pub struct Time {
     pub steps: u64,
     /// Attempts that were dropped.
     pub rejected: Rejected,
-    /// Smallest accepted step, s.
+    /// Smallest accepted step, s; after a static stage that of the dynamics.
     pub smallest_step: f64,
-    /// Largest accepted step, s.
+    /// Largest accepted step, s; after a static stage that of the dynamics.
     pub largest_step: f64,
     /// Largest step times wave speed over element size (Courant number); each body with the step of its zone.
     pub courant: Option<f64>,

@@ -214,3 +214,16 @@ fn what_cannot_be_drawn_is_refused_with_its_place() {
     let error = refused(&[], &[]);
     assert!(matches!(error, Error::EmptyPanel { .. }), "{error}");
 }
+
+#[test]
+fn a_panel_without_data_is_left_out_beside_others() {
+    let (x, y) = ([0.0, 1.0], [0.0, 2.0]);
+    let curves = |velocity| ContactCurves {
+        displacement: vec![curve("a", &x, &y, Role::Computed)],
+        velocity,
+        ..ContactCurves::default()
+    };
+    let alone = contact_figure("A", curves(Vec::new())).svg().unwrap();
+    let beside = curves(vec![curve("b", &[], &[], Role::Computed)]);
+    assert_eq!(contact_figure("A", beside).svg().unwrap(), alone);
+}

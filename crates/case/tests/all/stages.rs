@@ -1,0 +1,157 @@
+//! Static stages before the dynamics.
+
+use carom_case::{Input, build, parse};
+
+use crate::verdict::result;
+
+/// A bar in a static stage up to 1 s, then in steps up to 1.00001 s.
+fn bar(step: &str) -> String {
+    format!(
+        r#"
+carom = 1
+mesh.generate.bar.line = {{ from = [0.0], to = ["10 mm"], elements = 2 }}
+material.m = {{ density = 7800.0, elastic = {{ young = "210 GPa", poisson = 0.0 }} }}
+body.bar = {{ region = "bar", material = "m", section.bar.area = "1 mm^2" }}
+support.left = {{ on = "bar.left", fix = ["x"] }}
+load.pull = {{ on = "bar.right", force = ["100 N"] }}
+time = {{ end = 1.00001, step = "{step}", static = {{ end = 1.0, steps = 1 }}, scheme.newmark = {{}} }}
+"#
+    )
+}
+
+#[test]
+fn the_steps_of_a_run_are_those_after_its_static_stage() {
+    let checked = |step: &str| {
+        let input = Input::from_text("case.toml", &bar(step), &[]);
+        let (case, locator) = parse(&input).unwrap();
+        build(&case, &locator, &input)
+    };
+    // 10 us in steps of 0.1 ns, not 1.00001 s
+    let built = checked("1e-10 s").unwrap();
+    let facts = carom_case::facts(&built);
+    let time = facts.iter().find(|fact| fact.name == "time").unwrap();
+    assert!(
+        time.value.contains("100000 steps of 1.000000e-10 s"),
+        "{}",
+        time.value
+    );
+    let problems = checked("1e-15 s").unwrap_err();
+    let found = problems[0].found.as_deref().unwrap();
+    assert_eq!(found, "1.000e10 steps of 1.000e-15 s");
+
+    // the sizes that the summary tells, by which studies order their runs, are those of the dynamics
+    let (summary, _) = result(&bar("1 us"));
+    let time = &summary.time;
+    assert_eq!(time.steps, 11);
+    for size in [time.smallest_step, time.largest_step] {
+        assert!((size / 1e-6 - 1.0).abs() < 1e-12, "{size}");
+    }
+}
+
+/// Steps that are a fraction of the critical one grow by a rung at a time from that of the step before, but not from those of a static stage,
+/// which may be of any size.
+#[test]
+fn explicit_steps_begin_at_their_own_size_after_short_static_steps() {
+    let block = |end: f64| {
+        let text = format!(
+            r#"
+carom = 1
+mesh.generate.a.rectangle = {{ origin = [0.0, 0.0], size = [1.0, 1.0], elements = [2, 2] }}
+material.m = {{ density = 7800.0, elastic = {{ young = "200 GPa", poisson = 0.3 }} }}
+body.a = {{ region = "a", material = "m", section.plane-strain.thickness = 1.0 }}
+support.f = {{ on = "a.bottom", fix = ["x", "y"] }}
+load.g.acceleration = [0.0, -9.81]
+time = {{ end = {:?}, static = {{ end = {end:?}, steps = 10 }}, step.critical = 0.8, scheme.central-difference = {{}} }}
+"#,
+            end + 1.5e-3
+        );
+        result(&text).0
+    };
+    let [short, long] = [1e-6, 1.0].map(block);
+    // loads do not know how long the stage is: the same equilibrium, and the same steps to the rounding of their instants
+    assert_eq!(short.time.steps, long.time.steps);
+    let sizes = |of: &carom_output::Summary| [of.time.smallest_step, of.time.largest_step];
+    assert_eq!(sizes(&short), sizes(&long));
+    let energies = [&short, &long].map(|of| of.energy.strain_final);
+    assert!(
+        (energies[0] / energies[1] - 1.0).abs() < 1e-9,
+        "{energies:?}"
+    );
+}
+
+/// A hammer that nothing holds along its way waits for the dynamics: no load moves it, and only its stop is ahead. It has no stiffness at all.
+#[test]
+fn a_mass_before_a_stop_waits_for_the_dynamics() {
+    let (summary, histories) = result(
+        r#"
+carom = 1
+mesh.generate.b.line = { from = [0.0], to = [1.0], elements = 4 }
+material.m = { density = 1000.0, elastic = { young = 1e9, poisson = 0.0 } }
+body.b = { region = "b", material = "m", section.bar.area = 1e-4 }
+support.s = { on = "b.right", fix = ["x"] }
+load.f = { on = "b.left", force = [-10.0] }
+mass.hammer = { mass = 0.2, at = [-0.001], initial.velocity = [3.0] }
+stop.hit = { ends = ["hammer", "b.left"], axis = [1.0], gap = "1 mm", stiffness = 5e7 }
+probe.h = { on = "hammer", record = ["displacement", "velocity"] }
+time = { end = 1.0005, step = 1e-6, static = { end = 1.0, steps = 1 }, scheme.theta.theta = 0.55 }
+"#,
+    );
+    let (times, way) = (&histories["time_s"], &histories["probe.h.displacement_x_m"]);
+    let at = times.iter().position(|time| *time >= 1.0).unwrap();
+    assert_eq!(way[at], 0.0);
+    let speed = histories["probe.h.velocity_x_m_s"][at + 1];
+    assert!((speed / 3.0 - 1.0).abs() < 1e-12, "{speed}");
+    // F L/(E A) = 0.1 mm of the gap are gone: 0.9 mm at 3 m/s, to a step
+    let closing = summary.contacts["hit"].first_closing.unwrap();
+    assert!((closing - 1.0003).abs() < 2e-6, "{closing}");
+}
+
+/// A ram above a bar that is pulled in the stage: its weight would let it fall, and nothing else holds it.
+fn ram(body: &str) -> String {
+    format!(
+        r#"
+carom = 1
+mesh.generate.post.rectangle = {{ origin = [0.0, 0.0], size = [0.1, 0.1], elements = [2, 2] }}
+mesh.generate.ram.rectangle = {{ origin = [0.0, 0.1001], size = [0.1, 0.1], elements = [2, 2] }}
+material.m = {{ density = 1000.0, elastic = {{ young = 1e8, poisson = 0.0 }} }}
+body.post = {{ region = "post", material = "m", section.plane-strain.thickness = 0.1 }}
+body.ram = {{ region = "ram", material = "m", section.plane-strain.thickness = 0.1, initial.velocity = [0.0, -1.0]{body} }}
+support.foot = {{ on = "post.bottom", fix = ["x", "y"] }}
+load.g.acceleration = [0.0, -10.0]
+contact.c = {{ secondary = "ram.bottom", primary = "post.top", law.velocity = {{}} }}
+probe.r = {{ on = "ram.top", record = ["displacement", "velocity"] }}
+time = {{ end = 1.0004, step = 1e-6, static = {{ end = 1.0, steps = 2 }}, scheme.theta.theta = 0.6 }}
+"#
+    )
+}
+
+#[test]
+fn a_body_that_is_held_waits_for_the_dynamics_and_is_free_then() {
+    for body in [", hold = true", ", hold = true, rigid = {}"] {
+        let (summary, histories) = result(&ram(body));
+        let (times, way) = (&histories["time_s"], &histories["probe.r.displacement_y_m"]);
+        let at = times.iter().position(|time| *time >= 1.0).unwrap();
+        // held as by a support; nodes of a rigid body are placed from its centre, to rounding
+        assert!(way[at].abs() < 1e-15, "{body}: {:e}", way[at]);
+        // 0.1 mm and what the post has sunk, g ρ h²/(2 E) = 0.5 um, at 1 m/s; gravity adds g t²/2 = 0.05 um; to two steps
+        let closing = summary.contacts["c"].first_closing.unwrap();
+        assert!((closing - 1.0001005).abs() < 2e-6, "{closing}");
+    }
+    // without the word it would fall on the post in the stage: a static equilibrium
+    let (summary, _) = result(&ram(""));
+    let closing = summary.contacts["c"].first_closing.unwrap();
+    assert!(closing <= 1.0, "{closing}");
+}
+
+#[test]
+fn a_body_that_is_held_without_a_static_stage_is_refused() {
+    let text = ram(", hold = true").replace("static = { end = 1.0, steps = 2 }, ", "");
+    let input = Input::from_text("case.toml", &text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    let problems = build(&case, &locator, &input).err().unwrap();
+    assert!(
+        problems[0].message.contains("the case has none"),
+        "{}",
+        problems[0].message
+    );
+}
