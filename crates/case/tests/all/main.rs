@@ -27,6 +27,7 @@ mod reference;
 mod refine;
 mod repeat;
 mod resume;
+mod resume_cases;
 mod simulation;
 mod stage_one;
 mod verdict;
