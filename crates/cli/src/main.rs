@@ -15,6 +15,7 @@ mod ranks;
 mod report;
 mod resume;
 mod run;
+mod signals;
 mod study;
 mod sweep;
 mod terminal;

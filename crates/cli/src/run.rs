@@ -2,8 +2,6 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::Finished;
 use carom_dynamics::RankShare;
@@ -17,6 +15,7 @@ use crate::exit::{BAD, FAILED, INTERRUPTED};
 use crate::load::{load_on, warn_of_ranks};
 use crate::progress::Progress;
 use crate::ranks::all_have;
+use crate::signals;
 use crate::terminal::{err, line, out};
 
 /// Arguments of `carom run`.
@@ -107,21 +106,17 @@ pub fn end(ended: Result<Option<Finished>, carom_case::Failed>, folder: &Path, j
     }
 }
 
-/// A run up to a simulated time (s) with its progress on the terminal, which Ctrl-C, SIGTERM and SIGHUP stop before the next step.
+/// A run up to a simulated time (s) with its progress on the terminal, which Ctrl-C, SIGTERM and SIGHUP stop within the step under way; on
+/// several ranks before the next one.
 pub fn until_stopped<T>(
     until: f64,
     quiet: bool,
     run: impl FnOnce(&mut Progress, &dyn Fn() -> bool) -> T,
 ) -> T {
-    let stopped = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stopped);
-    // without a handler Ctrl-C ends the program at once, as it would any other
-    let handled = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-    if let Err(error) = handled {
-        tracing::warn!("Ctrl-C will not leave a summary: {error}");
-    }
-    let mut progress = Progress::new(until, quiet || !std::io::stderr().is_terminal());
-    run(&mut progress, &|| stopped.load(Ordering::Relaxed))
+    let interrupt = signals::interrupt("a summary");
+    let hidden = quiet || !std::io::stderr().is_terminal();
+    let mut progress = Progress::new(until, hidden, interrupt.clone());
+    run(&mut progress, &|| interrupt.is_set())
 }
 
 /// The summary for people: forces, impulses, energy, verdict, where to look.

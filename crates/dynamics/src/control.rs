@@ -55,6 +55,10 @@ pub fn adapt(
         attempts += 1;
         dt = run.stable(dt)?;
         let outcome = run.attempt(dt, control.next(rules, largest));
+        if let Err(Error::Interrupted) = outcome {
+            run.withdraw();
+            return Err(Error::Interrupted);
+        }
         let event = match &outcome {
             Err(_) => Some((Event::Failure, dt)),
             Ok(()) => {

@@ -253,6 +253,9 @@ pub enum Error {
         /// Cause.
         cause: String,
     },
+    /// Somebody asked for the end of the step under way; the state is the one before it.
+    #[error("interrupted")]
+    Interrupted,
     /// A stepper of another crate failed.
     #[error(transparent)]
     Stepper(Box<dyn std::error::Error + Send + Sync>),

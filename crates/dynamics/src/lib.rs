@@ -42,6 +42,7 @@ mod update;
 mod watch;
 
 pub use alike::Alike;
+pub use carom_algebra::Interrupt;
 use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;

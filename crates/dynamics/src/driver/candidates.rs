@@ -300,7 +300,9 @@ impl Driver {
         for (group, range) in compliance.groups().ranges().enumerate() {
             let places = &compliance.groups().order()[range];
             if self.interfaces.len() == group {
-                self.interfaces.push(Interface::default());
+                let mut solver = Interface::default();
+                solver.interrupt.clone_from(&self.interrupt);
+                self.interfaces.push(solver);
             }
             let (solver, all) = (&mut self.interfaces[group], &mut self.interface);
             let of_place = |&place: &u32| self.candidate_data[place as usize];
@@ -415,6 +417,7 @@ impl Driver {
                     point,
                 }
             }
+            Failure::Interrupted { .. } => Error::Interrupted,
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
+use carom_algebra::Interrupt;
 use carom_bodies::{Scratch, Stored};
 use carom_contact::{Contact, Pairing, Search};
 
@@ -114,6 +115,7 @@ impl Driver {
             candidate_data: Vec::new(),
             free_gaps: Vec::new(),
             coulomb: Coulomb::default(),
+            interrupt: Interrupt::default(),
             weak: WeakForms::new(&system)?,
             with_weak: WithWeak::default(),
             stacked: carom_contact::Rows::default(),

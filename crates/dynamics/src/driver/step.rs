@@ -3,6 +3,8 @@
 //! An adaptive step is cut where a contact closes, and halved where energy grows or no solution is found. A step of fixed
 //! size that finds no solution is taken in halves of halves.
 
+use carom_algebra::Interrupt;
+
 use super::Driver;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
@@ -90,7 +92,7 @@ impl Driver {
                         level -= 1;
                     }
                 }
-                Err(error) if level < most => {
+                Err(error) if level < most && !matches!(error, Error::Interrupted) => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
                     if matches!(error, Error::Unheld { .. }) {
                         unheld.get_or_insert(error);
@@ -103,7 +105,10 @@ impl Driver {
                         self.state = start;
                         self.leave_direct();
                     }
-                    return Err(unheld.unwrap_or(error));
+                    return match error {
+                        Error::Interrupted => Err(error),
+                        error => Err(unheld.unwrap_or(error)),
+                    };
                 }
             }
         }
@@ -239,5 +244,9 @@ impl Stepper for Driver {
 
     fn bring(&mut self, scope: Scope) {
         self.bring_on_ranks(scope);
+    }
+
+    fn heed(&mut self, interrupt: &Interrupt) {
+        self.heed(interrupt);
     }
 }
