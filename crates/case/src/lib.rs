@@ -37,7 +37,8 @@ mod tree;
 mod validate;
 
 pub use build::{
-    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_with, model,
+    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_to_look, build_with,
+    model,
 };
 pub use compare::{Choices, compare};
 pub use convert::{NotConverted, convert};

@@ -16,7 +16,7 @@ use crate::load::{load_on, warn_of_ranks};
 use crate::progress::Progress;
 use crate::ranks::all_have;
 use crate::signals;
-use crate::terminal::{err, line, out};
+use crate::terminal::{err, line, out, write_json};
 
 /// Arguments of `carom run`.
 #[derive(clap::Args)]
@@ -84,7 +84,7 @@ pub fn end(ended: Result<Option<Finished>, carom_case::Failed>, folder: &Path, j
                         out!("  {}", busiest(share));
                     }
                 }
-                Some(Ok(text)) => out!("{text}"),
+                Some(Ok(text)) => write_json(&text),
                 Some(Err(error)) => {
                     err!("error: {error}");
                     return FAILED;

@@ -135,6 +135,17 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
     build_with((case, locator, input), &[])
 }
 
+/// As [`build`], to look at: nothing is written, a reduction that has a file and is made anew is not saved.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
+    let mut builder = Builder::new(case, input);
+    builder.saves = false;
+    let built = builder.build(input, &[]);
+    finished(built, builder.problems, locator)
+}
+
 /// As [`build`], with forces that are in no case file.
 ///
 /// # Errors
@@ -145,9 +156,18 @@ pub fn build_with(
 ) -> Result<Built, Vec<Problem>> {
     let mut builder = Builder::new(case, input);
     let built = builder.build(input, forces);
+    finished(built, builder.problems, locator)
+}
+
+/// What is built, or the problems with their places.
+fn finished<T>(
+    built: Option<T>,
+    problems: Vec<Problem>,
+    locator: &Locator,
+) -> Result<T, Vec<Problem>> {
     match built {
-        Some(built) if builder.problems.is_empty() => Ok(built),
-        _ => Err(locator.locate_all(builder.problems)),
+        Some(built) if problems.is_empty() => Ok(built),
+        _ => Err(locator.locate_all(problems)),
     }
 }
 
@@ -159,10 +179,8 @@ pub fn build_with(
 pub fn model(case: &Case, locator: &Locator, input: &Input) -> Result<Model, Vec<Problem>> {
     let mut builder = Builder::new(case, input);
     let modelled = builder.model(input, &[]);
-    match modelled {
-        Some(modelled) if builder.problems.is_empty() => Ok(builder.in_one(modelled.model)),
-        _ => Err(locator.locate_all(builder.problems)),
-    }
+    let modelled = modelled.map(|modelled| builder.in_one(modelled.model));
+    finished(modelled, builder.problems, locator)
 }
 
 /// A model, and what is built of a case beside it.
