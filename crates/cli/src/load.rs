@@ -6,7 +6,7 @@ use std::path::Path;
 use carom_case::{Built, Input, Locator, Problem, Source};
 use carom_ranks::Ranks;
 
-use crate::exit::BAD_INPUT;
+use crate::exit::{BAD_INPUT, FAILED};
 use crate::terminal::err;
 use crate::{diagnostics, terminal};
 
@@ -78,8 +78,13 @@ pub fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_out
     offenders.try_for_each(|cells| cells.write(case))
 }
 
+/// Prints problems; returns the exit code.
 pub fn refuse(sources: &[Source], problems: &[Problem]) -> u8 {
     let styled = std::io::stderr().is_terminal();
     terminal::write_styled(&diagnostics::render(sources, problems, styled));
-    BAD_INPUT
+    // another machine would take the case
+    match problems.iter().all(|problem| problem.lacks_memory) && !problems.is_empty() {
+        true => FAILED,
+        false => BAD_INPUT,
+    }
 }

@@ -195,6 +195,8 @@ impl Driver {
         let rows = &self.pairing.rows;
         let points = (&self.candidates[..], 1, together);
         if !self.refined.holds_columns {
+            let room = compliance.has_room(points, rows, &system.fixed, operators);
+            room.map_err(|cause| Error::no_room(&self.state, cause))?;
             compliance.update(points, rows, &system.fixed, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());

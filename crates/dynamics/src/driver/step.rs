@@ -92,7 +92,7 @@ impl Driver {
                         level -= 1;
                     }
                 }
-                Err(error) if level < most && !matches!(error, Error::Interrupted) => {
+                Err(error) if level < most && !error.is_of_any_step() => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
                     if matches!(error, Error::Unheld { .. }) {
                         unheld.get_or_insert(error);
@@ -105,9 +105,9 @@ impl Driver {
                         self.state = start;
                         self.leave_direct();
                     }
-                    return match error {
-                        Error::Interrupted => Err(error),
-                        error => Err(unheld.unwrap_or(error)),
+                    return match error.is_of_any_step() {
+                        true => Err(error),
+                        false => Err(unheld.unwrap_or(error)),
                     };
                 }
             }
