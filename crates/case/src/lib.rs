@@ -35,6 +35,7 @@ mod study;
 mod sweep;
 mod tree;
 mod validate;
+mod words;
 
 pub use build::{
     AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_to_look, build_with,

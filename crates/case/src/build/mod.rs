@@ -89,6 +89,8 @@ pub struct Built {
     pub warnings: Vec<String>,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub reductions: Vec<(String, String)>,
+    /// Signals, and what they have in words.
+    pub signals: Vec<(String, String)>,
 }
 
 impl Built {
@@ -106,6 +108,7 @@ impl Built {
             reference: None,
             warnings: Vec::new(),
             reductions: Vec::new(),
+            signals: Vec::new(),
         }
     }
 }
@@ -356,6 +359,7 @@ impl Builder<'_> {
             reference,
             warnings: std::mem::take(&mut self.warnings),
             reductions: std::mem::take(&mut self.reductions),
+            signals: std::mem::take(&mut self.told_signals),
         })
     }
 }
