@@ -308,6 +308,17 @@ pub struct Angular {
     pub relative_residual: f64,
 }
 
+impl Angular {
+    /// The largest component at the start, at the end and of an impulse.
+    pub(crate) fn largest(&self) -> f64 {
+        let rows = [&self.initial, &self.r#final]
+            .into_iter()
+            .chain(self.impulses.values());
+        rows.flatten()
+            .fold(0.0, |most, part| f64::max(most, part.abs()))
+    }
+}
+
 /// Distance of one contact from its exact solution. Relative errors are `null` where there is nothing to be relative to.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exact {

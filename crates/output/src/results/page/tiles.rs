@@ -102,17 +102,50 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
         let window = quantity(contact.window, "s");
         format!("; mean over {window}: {}", quantity(mean, "N"))
     });
-    let steps = format!("{at}of a single step{}", mean.unwrap_or_default());
+    let loaded = preload(contact).map(|[preload, shock]| {
+        let [preload, shock] = [preload, shock].map(|force| quantity(force, "N"));
+        format!("; of it preload {preload}, shock {shock}")
+    });
+    let steps = format!(
+        "{at}of a single step{}{}",
+        loaded.unwrap_or_default(),
+        mean.unwrap_or_default()
+    );
     let peak = quantity(contact.peak_force, "N");
     let mut tiles = vec![Tile {
         time: record.map(|record| record.peak_time),
         ..tile("Peak force", peak, format!("{of}{steps}"), "plot-force")
     }];
+    tiles.extend(shock(&summary.contacts));
     tiles.extend(impulse(results, summary));
     if contact.impulse.is_some() {
         tiles.push(restitution(summary, name, contact));
     }
     tiles
+}
+
+/// The force at the end of a static stage, and what the largest force has over it, N; none of a contact that carries nothing there.
+fn preload(contact: &Contact) -> Option<[f64; 2]> {
+    let preload = contact.preload.filter(|preload| *preload > 0.0)?;
+    Some([preload, (contact.peak_force - preload).max(0.0)])
+}
+
+/// Of the contact whose force grows most over its preload: a large preload hides the shock, and the shock of another contact.
+fn shock(contacts: &BTreeMap<String, Contact>) -> Option<Tile> {
+    let is_loaded = |contact: &Contact| preload(contact).is_some();
+    if !contacts.values().any(is_loaded) {
+        return None;
+    }
+    let over = |contact: &Contact| preload(contact).map_or(contact.peak_force, |[_, over]| over);
+    let (name, contact, most) = largest(contacts, |contact| Some(over(contact)))?;
+    let of = match contacts.len() {
+        1 => String::new(),
+        count => format!("{name}, largest of {count} contacts; "),
+    };
+    let [peak, before] = [contact.peak_force, contact.peak_force - most];
+    let [peak, before] = [peak, before].map(|force| quantity(force, "N"));
+    let note = format!("{of}largest force {peak} less the preload {before}");
+    Some(tile("Shock", quantity(most, "N"), note, "plot-force"))
 }
 
 /// The contact with the largest number of those that have one, and that number; the last of equals.
@@ -292,6 +325,28 @@ fn coordinates(system: &System, x: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_shock_is_told_beside_a_preload_that_is_larger() {
+        let contact = |peak_force, preload| Contact {
+            peak_force,
+            preload,
+            ..Contact::default()
+        };
+        let both = |contacts: [(&str, Contact); 2]| -> BTreeMap<String, Contact> {
+            contacts.map(|(name, one)| (name.to_owned(), one)).into()
+        };
+        let loaded = [
+            ("bolt", contact(20e3, Some(19e3))),
+            ("rail", contact(3e3, Some(0.0))),
+        ];
+        let tile = shock(&both(loaded)).unwrap();
+        assert_eq!((tile.label, &tile.value[..]), ("Shock", "3.00 kN"));
+        assert!(tile.note.starts_with("rail"), "{}", tile.note);
+        assert_eq!(preload(&contact(20e3, Some(19e3))), Some([19e3, 1e3]));
+        let without = [("bolt", contact(20e3, None)), ("rail", contact(3e3, None))];
+        assert_eq!(shock(&both(without)), None);
+    }
 
     #[test]
     fn the_largest_force_and_the_largest_impulse_may_be_of_two_contacts() {
