@@ -230,6 +230,7 @@ pub(crate) fn settings(
             })
             .collect(),
         levels: built.levels.clone(),
+        allowables: built.allowables.clone(),
         history_every: case.output.histories.map(|histories| histories.every.0),
         compress_histories: case.output.compress_histories,
         piece: None,

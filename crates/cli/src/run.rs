@@ -8,7 +8,7 @@ use carom_dynamics::RankShare;
 
 use carom_output::plot::quantity;
 use carom_output::summary::{Contact, Newton};
-use carom_output::{Grade, Level, Summary};
+use carom_output::{Grade, Level, Margin, Summary};
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
@@ -176,6 +176,10 @@ fn print(summary: &Summary, folder: &Path) {
     let together: Vec<&String> = together.flat_map(|level| &level.contacts).collect();
     for (name, level) in &summary.levels {
         print_level(name, level);
+    }
+    for check in &summary.allowables {
+        let of = format!("{} of {} {}", check.quantity, check.kind, check.name);
+        print_margin("  ", &of, (&check.margin, &check.unit));
     }
     let alone = summary.contacts.iter();
     let alone = alone.filter(|(name, _)| !together.contains(name));
@@ -356,16 +360,23 @@ fn print_level(name: &str, level: &Level) {
     let margins = [
         ("force", "N", &level.force_margin),
         ("energy", "J", &level.energy_margin),
+        ("stroke", "m", &level.stroke_margin),
+        ("crush", "m", &level.crush_margin),
     ];
     for (of, unit, margin) in margins {
         let Some(margin) = margin else { continue };
-        if let Some(left) = margin.margin {
-            let allowable = quantity(margin.allowable, unit);
-            out!(
-                "    margin to the allowable {of} of {allowable}: {:.0} %",
-                100.0 * left
-            );
-        }
+        print_margin("    ", of, (margin, unit));
+    }
+}
+
+/// What is left to an allowable, if anything was found.
+fn print_margin(indent: &str, of: &str, (margin, unit): (&Margin, &str)) {
+    if let Some(left) = margin.margin {
+        let allowable = quantity(margin.allowable, unit);
+        out!(
+            "{indent}margin to the allowable {of} of {allowable}: {:.0} %",
+            100.0 * left
+        );
     }
 }
 

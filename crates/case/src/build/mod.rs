@@ -2,6 +2,7 @@
 
 mod added;
 mod advice;
+mod allowables;
 mod arlequin;
 mod beams;
 mod bodies;
@@ -49,7 +50,7 @@ mod zones;
 use std::sync::Arc;
 
 use carom_dynamics::{Model, Nonlinear, System};
-use carom_output::{LevelSettings, Spectrum};
+use carom_output::{AllowableSettings, LevelSettings, Spectrum};
 use carom_zones::Zoned;
 
 use crate::error::Problem;
@@ -81,6 +82,8 @@ pub struct Built {
     pub stage: Option<(f64, u32)>,
     /// Contacts that are judged together, in the order of their names.
     pub levels: Vec<LevelSettings>,
+    /// What bodies, supports and springs may bear.
+    pub allowables: Vec<AllowableSettings>,
     /// Probes, in the order of their names.
     pub probes: Vec<BuiltProbe>,
     /// The exact solution that the case names.
@@ -104,6 +107,7 @@ impl Built {
             end,
             stage: None,
             levels: Vec::new(),
+            allowables: Vec::new(),
             probes: Vec::new(),
             reference: None,
             warnings: Vec::new(),
@@ -343,6 +347,7 @@ impl Builder<'_> {
         self.startable(&system);
         self.advise(&system);
         let levels = self.levels(&system);
+        let allowables = self.allowables(&system);
         self.probes_at_contacts(&probes, &system);
         let probes = self.weighed(probes, &system);
         let end = self.case.time.end.0;
@@ -355,6 +360,7 @@ impl Builder<'_> {
             end,
             stage: self.case.time.stage.map(|stage| (stage.end.0, stage.steps)),
             levels,
+            allowables,
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),

@@ -3,6 +3,7 @@
 // Helpers of tests panic as the tests themselves do.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
+mod allowables;
 mod checks;
 mod compare;
 mod damaged;

@@ -7,7 +7,7 @@ use carom_dynamics::{ContactRecord, Impact, NoRestitution};
 
 use crate::results::impacts::ContactTotals;
 use crate::results::{LevelSettings, Results};
-use crate::statistics::{Level, Statistics};
+use crate::statistics::{Depth, Level, Statistics};
 use crate::summary::{Contact, Friction};
 
 /// Each contact by its name.
@@ -118,7 +118,18 @@ pub(crate) fn levels(results: &Results) -> BTreeMap<String, Level> {
         let loss = losses
             .map(ContactRecord::friction_loss)
             .fold(0.0, |a, b| a + b);
-        let of = Level::of(&level.contacts, &impacts, name, (loss, level.allowable));
+        let depths = level.contacts.iter().filter_map(|&k| {
+            let record = records.get(k)?;
+            Some(Depth {
+                contact: k,
+                stroke: record.penetration,
+                crush: results.last.crushes.get(k).copied().unwrap_or(0.0),
+                time: record.peak_time,
+            })
+        });
+        let depths: Vec<Depth> = depths.collect();
+        let of_both = (&impacts[..], &depths[..]);
+        let of = Level::of(&level.contacts, of_both, name, (loss, level.allowable));
         (level.name.clone(), of)
     };
     results.settings.levels.iter().map(one).collect()

@@ -32,4 +32,6 @@ pub(crate) struct Last {
     pub(crate) velocities: Vec<[f64; 3]>,
     /// Whether each contact has a force.
     pub(crate) closed: Vec<bool>,
+    /// Largest crush of a point of each contact that stays, m.
+    pub(crate) crushes: Vec<f64>,
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::maxima::Maxima;
-use crate::statistics::Level;
+use crate::statistics::{Check, Level};
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
@@ -52,6 +52,9 @@ pub struct Summary {
     /// Largest values of the fields.
     #[serde(default)]
     pub maxima: Maxima,
+    /// What bodies, supports and springs had to bear, where the case says what they may.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowables: Vec<Check>,
     /// Balance of energy.
     pub energy: Energy,
     /// Balance of linear momentum.

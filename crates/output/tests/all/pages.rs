@@ -53,6 +53,7 @@ fn sample(verdict: Verdict) -> Summary {
         loads: BTreeMap::new(),
         discrete: BTreeMap::new(),
         maxima: Default::default(),
+        allowables: Vec::new(),
         energy,
         momentum: Momentum {
             initial: [6.6, 0.0, 0.0],

@@ -10,6 +10,7 @@ use crate::maxima::{Maxima, Maximum};
 use crate::plot::{quantity, scientific};
 use crate::results::Results;
 use crate::results::outlines::size;
+use crate::statistics::Margin;
 use crate::summary::{Contact, Energy, Summary};
 use crate::verdict::Grade;
 
@@ -47,6 +48,7 @@ fn tile(label: &'static str, value: String, note: String, section: &'static str)
 /// All tiles in their order.
 pub(crate) fn tiles(results: &Results, summary: &Summary) -> Vec<Tile> {
     let mut tiles = vec![verdict(summary)];
+    tiles.extend(margin(summary));
     tiles.extend(of_contacts(results, summary));
     tiles.push(energy(&summary.energy));
     tiles.extend(of_fields(results, &summary.maxima));
@@ -76,6 +78,44 @@ fn verdict(summary: &Summary) -> Tile {
         grade: verdict.grade.word(),
         ..tile("Verdict", verdict.grade.word().to_owned(), note, "verdict")
     }
+}
+
+/// The least margin of all that the case allows.
+fn margin(summary: &Summary) -> Option<Tile> {
+    let of_levels = summary.levels.iter().flat_map(|(name, level)| {
+        let all = [
+            ("force", "N", &level.force_margin),
+            ("energy", "J", &level.energy_margin),
+            ("stroke", "m", &level.stroke_margin),
+            ("crush", "m", &level.crush_margin),
+        ];
+        all.into_iter().filter_map(move |(what, unit, margin)| {
+            let margin = margin.clone()?;
+            Some((format!("{what} of level {name}"), unit, margin, "levels"))
+        })
+    });
+    let of_parts = summary.allowables.iter().map(|check| {
+        let of = format!("{} of {} {}", check.quantity, check.kind, check.name);
+        (of, check.unit.as_str(), check.margin.clone(), "allowables")
+    });
+    let all: Vec<(String, &str, Margin, &'static str)> = of_levels.chain(of_parts).collect();
+    let known = all.iter().filter_map(|one| Some((one, one.2.margin?)));
+    let exceeded = known.clone().filter(|(_, left)| *left < 0.0).count();
+    let ((of, unit, margin, section), left) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let [found, allowable] = [margin.found, margin.allowable].map(|value| quantity(value, unit));
+    let others = match all.len() {
+        1 => String::new(),
+        count => format!("; least of {count} margins, {exceeded} allowables exceeded"),
+    };
+    Some(Tile {
+        grade: if left < 0.0 { "bad" } else { "good" },
+        ..tile(
+            "Margin",
+            percent(left),
+            format!("{of}: {found} of {allowable}{others}"),
+            *section,
+        )
+    })
 }
 
 /// Of the contact with the largest force.
