@@ -23,6 +23,7 @@ mod materials;
 mod mesh;
 mod nonlinear;
 mod obstacles;
+mod oscillators;
 mod penetration;
 mod pieces;
 mod plan;
@@ -342,6 +343,7 @@ impl Builder<'_> {
         self.able_to_act(&system);
         self.with_area(&system);
         self.fine_enough(system.dt);
+        self.warn_of_oscillators(&system);
         self.penetration(&system);
         self.moved(&system, &nodes);
         self.startable(&system);
