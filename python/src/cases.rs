@@ -38,12 +38,19 @@ pub(crate) struct Loaded {
     pub(crate) built: Built,
 }
 
+/// What builds a case: to be run, or to be looked at.
+type Build = fn(&Case, &Locator, &Input) -> Result<Built, Vec<Problem>>;
+
 /// Reads and builds a case.
 pub(crate) fn load(py: Python<'_>, given: Given) -> PyResult<Loaded> {
+    load_by(py, given, carom_case::build)
+}
+
+fn load_by(py: Python<'_>, given: Given, build: Build) -> PyResult<Loaded> {
     let input = input(given);
     let loaded = py.detach(|| {
         let (case, locator) = carom_case::parse(&input)?;
-        let built = carom_case::build(&case, &locator, &input)?;
+        let built = build(&case, &locator, &input)?;
         Ok((case, locator, built))
     });
     match loaded {
@@ -79,7 +86,7 @@ pub(crate) fn schema() -> String {
 /// Facts and warnings of a case that can be run.
 #[pyfunction]
 pub(crate) fn check(py: Python<'_>, given: Given) -> PyResult<Checked> {
-    let built = load(py, given)?.built;
+    let built = load_by(py, given, carom_case::build_to_look)?.built;
     let facts = py.detach(|| {
         let mut facts = carom_case::facts(&built);
         facts.extend(carom_case::mesh_facts(&built).0);

@@ -51,6 +51,9 @@ pub enum Error {
         /// Cause, as the library reports it.
         reason: String,
     },
+    /// The factor has no room.
+    #[error(transparent)]
+    Memory(#[from] carom_ranks::memory::Short),
     /// Iterations do not end: the matrix is not positive definite, or nearly singular.
     #[error(
         "after {iterations} iterations the residual is {residual:.1e} of the first, most of it at unknown {unknown}"

@@ -13,6 +13,7 @@ pub mod eigen;
 mod error;
 pub mod fingerprint;
 mod functions;
+mod interrupt;
 pub mod lanes;
 pub mod number;
 mod ordering;
@@ -26,3 +27,4 @@ pub mod tensor;
 pub mod unknowns;
 
 pub use error::Error;
+pub use interrupt::Interrupt;

@@ -35,6 +35,8 @@ pub struct Problem {
     pub notes: Vec<String>,
     /// The cells that it is about.
     pub offenders: Option<Offenders>,
+    /// Whether nothing is wrong with the case, and this machine has too little memory for it.
+    pub lacks_memory: bool,
 }
 
 impl Problem {
@@ -49,6 +51,7 @@ impl Problem {
             nearest: None,
             notes: Vec::new(),
             offenders: None,
+            lacks_memory: false,
         }
     }
 

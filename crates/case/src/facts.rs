@@ -11,6 +11,7 @@ use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::accelerations::accelerations;
 use crate::build::Built;
+use crate::words::words;
 
 /// A line of `carom check`: what, and how much.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,7 +22,7 @@ pub struct Fact {
     pub value: String,
 }
 
-fn fact(name: impl Into<String>, value: impl Into<String>) -> Fact {
+pub(crate) fn fact(name: impl Into<String>, value: impl Into<String>) -> Fact {
     Fact {
         name: name.into(),
         value: value.into(),
@@ -44,6 +45,11 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             system.points()
         ),
     )];
+    let (accelerations, start) = (accelerations(system), &system.initial_displacement);
+    let contacts = 0..system.contacts.len();
+    let approaches = contacts.map(|k| approach(system, &accelerations, (k, start)));
+    let approaches: Vec<Approach> = approaches.collect();
+    facts.extend(words(built, &approaches));
     for (k, body) in system.bodies.iter().enumerate() {
         let Some(body) = body.as_solid() else {
             facts.extend(body.as_discrete().map(discrete_fact));
@@ -71,11 +77,10 @@ pub fn facts(built: &Built) -> Vec<Fact> {
             ),
         ));
     }
-    let accelerations = accelerations(system);
     for (k, contact) in system.contacts.iter().enumerate() {
         facts.push(fact(
             format!("contact {}", contact.name),
-            contact_facts(built, &accelerations, k),
+            contact_facts(built, &approaches[k], k),
         ));
     }
     let begin = built.stage.map_or(0.0, |(end, _)| end);
@@ -268,18 +273,22 @@ fn discrete_fact(discrete: &Discrete) -> Fact {
     fact(format!("{kind} {}", discrete.name()), places + &text)
 }
 
-/// Step over the least time in which a wave crosses an element.
-fn courant(system: &System) -> String {
+/// Step over the least time in which a wave crosses an element; none without waves.
+pub(crate) fn courant_number(system: &System) -> Option<f64> {
     let crossing = system
         .bodies
         .iter()
         .map(Body::passage)
         .filter(|passage| *passage > 0.0)
         .fold(f64::INFINITY, f64::min);
-    match crossing.is_finite() {
-        true => format!("Courant number {:.3}", system.dt / crossing),
-        false => "no waves".to_owned(),
-    }
+    crossing.is_finite().then(|| system.dt / crossing)
+}
+
+fn courant(system: &System) -> String {
+    let number = courant_number(system);
+    number.map_or("no waves".to_owned(), |number| {
+        format!("Courant number {number:.3}")
+    })
 }
 
 /// A line for each zone: bodies, scheme, steps.
@@ -423,10 +432,8 @@ fn first_closing(gap: f64, speed: f64, pull: f64) -> f64 {
     }
 }
 
-fn contact_facts(built: &Built, accelerations: &[f64], contact: usize) -> String {
+fn contact_facts(built: &Built, approach: &Approach, contact: usize) -> String {
     let system = &built.system;
-    let start = &system.initial_displacement;
-    let approach = approach(system, accelerations, (contact, start));
     let pair = &system.contacts[contact];
     let law = pair.law.get().name();
     let sliding = match pair.sliding {

@@ -36,9 +36,11 @@ mod study;
 mod sweep;
 mod tree;
 mod validate;
+mod words;
 
 pub use build::{
-    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_with, model,
+    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_to_look, build_with,
+    model,
 };
 pub use compare::{Choices, compare};
 pub use convert::{NotConverted, convert};

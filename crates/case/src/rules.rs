@@ -107,6 +107,11 @@ fn check_time(case: &Case, problems: &mut Vec<Problem>) {
     }
 }
 
+/// Nodes of a generated part.
+pub(crate) fn nodes_of(elements: &[Count]) -> f64 {
+    elements.iter().map(|count| count.0 as f64 + 1.0).product()
+}
+
 fn check_part(path: &str, part: &Part, problems: &mut Vec<Problem>) {
     let (shape, elements): (&str, &[Count]) = match part {
         Part::Line(line) => {
@@ -116,7 +121,7 @@ fn check_part(path: &str, part: &Part, problems: &mut Vec<Problem>) {
         Part::Rectangle(rectangle) => ("rectangle", &rectangle.elements),
         Part::Box(part) => ("box", &part.elements),
     };
-    let nodes: f64 = elements.iter().map(|count| count.0 as f64 + 1.0).product();
+    let nodes = nodes_of(elements);
     if nodes > MOST_NODES {
         let problem = Problem::new(format!("{path}.{shape}.elements"), "too many elements");
         problems.push(

@@ -56,7 +56,8 @@ pub(crate) enum Begin {
     Review(Box<Checkpoint>, Folder),
 }
 
-/// Runs a case into a results folder. `progress` sees every accepted state; `stop` is asked before every step.
+/// Runs a case into a results folder. `progress` sees every accepted state, and what interrupts it ends the step under way too; `stop` is asked
+/// before every step.
 ///
 /// # Errors
 /// The folder cannot be written, or a step fails. The folder then holds all that was computed before.
@@ -113,6 +114,9 @@ fn observed(
             (results, go_on, f64::NEG_INFINITY)
         }
     };
+    if let Some(interrupt) = progress.interrupt() {
+        run.heed(interrupt);
+    }
     let observers: &mut [&mut dyn Observer] = &mut [&mut results, progress];
     let outcome = march(run, end, observers, stop);
     Ok((results, outcome))
@@ -144,7 +148,9 @@ pub(crate) fn conclude(
         Ok(Outcome::Interrupted) => Some("the run was interrupted".to_string()),
         Err(error) => Some(error.to_string()),
     };
-    let kept = match run.failed_problem() {
+    // that of a step which somebody ended early is none
+    let failed = outcome.is_err().then(|| run.failed_problem());
+    let kept = match failed.flatten() {
         Some(problem) => {
             let text =
                 serde_json::to_string_pretty(&problem).unwrap_or_else(|cause| cause.to_string());
@@ -224,6 +230,7 @@ pub(crate) fn settings(
             })
             .collect(),
         levels: built.levels.clone(),
+        allowables: built.allowables.clone(),
         history_every: case.output.histories.map(|histories| histories.every.0),
         compress_histories: case.output.compress_histories,
         piece: None,

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use carom_dynamics::{Observer, Stepper};
+use carom_dynamics::{Interrupt, Observer, Stepper};
 use carom_output::compare::{Done, Outcome, Recorder, Variant};
 use carom_output::{Folder, Reference};
 use thiserror::Error as ThisError;
@@ -237,6 +237,10 @@ impl Observer for Watched {
     fn finish(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
         self.recorder.finish(run)?;
         self.watch.finish(run)
+    }
+
+    fn interrupt(&self) -> Option<&Interrupt> {
+        self.watch.interrupt()
     }
 }
 

@@ -239,13 +239,9 @@ impl<'a> Walker<'a> {
         let problem = Problem::new(path, error.to_string())
             .found(self.written(item.value))
             .accepted([accepted(self.schema, schema)]);
-        let meant = match error {
-            UnitError::UnknownSymbol { nearest, .. } => nearest,
-            _ => None,
-        };
         self.problems.push(
             Problem {
-                nearest: meant,
+                nearest: error.meant(),
                 ..problem
             }
             .at(item.value),

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use carom_case::{Built, Estimate, Fact, Offenders};
+use carom_case::{Built, Estimate, Fact, Offenders, Problem};
 use carom_output::atomic;
 use carom_output::plot::quantity;
 
 use crate::exit::{BAD_INPUT, FAILED};
-use crate::load::{keep_offenders, load_with};
-use crate::terminal::{err, line, out};
+use crate::load::{Build, keep_offenders, load_with};
+use crate::terminal::{err, line, out, write_json};
 
 /// For so long the estimate takes steps.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -28,17 +28,23 @@ pub struct Arguments {
     /// Draw the model into this SVG file
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
+    /// Write the cells that are worth a look, or that a problem is about, into the folder `CASE.check` beside the case
+    #[arg(long)]
+    cells: bool,
     /// Print the facts and warnings as JSON
     #[arg(long)]
     json: bool,
 }
 
-/// Checks a case; returns the exit code.
+/// Checks a case; returns the exit code. Nothing is written but what is asked for.
 pub fn check(arguments: &Arguments) -> u8 {
     let case = &arguments.case;
-    let loaded = load_with(case, &arguments.set, |problems| {
-        keep_offenders(case, problems)
-    });
+    let keep_cells = |problems: &[Problem]| match arguments.cells {
+        true => keep_offenders(case, problems),
+        false => Ok(()),
+    };
+    let how = (carom_case::build_to_look as Build, keep_cells);
+    let loaded = load_with(case, &arguments.set, how);
     let (input, parsed, mut built) = match loaded {
         Ok(loaded) => loaded,
         Err(code) => return code,
@@ -46,7 +52,11 @@ pub fn check(arguments: &Arguments) -> u8 {
     let mut facts = carom_case::facts(&built);
     let (of_mesh, offenders) = carom_case::mesh_facts(&built);
     facts.extend(of_mesh);
-    if let Err(code) = keep(&offenders, case, &mut facts) {
+    if !arguments.cells {
+        let told =
+            |cells: &Offenders| format!("`--cells` writes them to {}", cells.path(case).display());
+        facts.extend(offenders.iter().map(|cells| fact(&cells.name, told(cells))));
+    } else if let Err(code) = keep(&offenders, case, &mut facts) {
         return code;
     }
     if arguments.estimate {
@@ -134,6 +144,6 @@ fn json(built: &Built, facts: &[Fact]) -> u8 {
         .map(|fact| [&*fact.name, &*fact.value])
         .collect();
     let value = serde_json::json!({ "facts": pairs, "warnings": built.warnings });
-    out!("{value:#}");
+    write_json(&format!("{value:#}\n"));
     0
 }

@@ -6,14 +6,21 @@ use std::path::Path;
 use carom_case::{Built, Input, Locator, Problem, Source};
 use carom_ranks::Ranks;
 
-use crate::exit::BAD_INPUT;
+use crate::exit::{BAD_INPUT, FAILED};
 use crate::terminal::err;
 use crate::{diagnostics, terminal};
 
 /// Reads and builds a case, or prints all its problems.
 pub fn load(case: &Path, set: &[String]) -> Result<(Input, carom_case::schema::Case, Built), u8> {
-    load_with(case, set, |_| Ok(()))
+    load_with(
+        case,
+        set,
+        (carom_case::build as Build, |_: &[Problem]| Ok(())),
+    )
 }
+
+/// [`carom_case::build`], or [`carom_case::build_to_look`].
+pub type Build = fn(&carom_case::schema::Case, &Locator, &Input) -> Result<Built, Vec<Problem>>;
 
 /// Warns of what several ranks do not share of what the first one has built.
 pub fn warn_of_ranks(ranks: &Ranks, built: Option<&Built>) {
@@ -43,11 +50,14 @@ pub fn load_on(ranks: &Ranks, case: &Path, set: &[String]) -> Result<Read, u8> {
     Ok((input, parsed, locator, built))
 }
 
-/// As [`load`]; `keep` sees the problems after they are printed.
+/// As [`load`], built by `build`; `keep` sees the problems after they are printed.
 pub fn load_with(
     case: &Path,
     set: &[String],
-    keep: impl Fn(&[Problem]) -> Result<(), carom_output::Error>,
+    (build, keep): (
+        Build,
+        impl Fn(&[Problem]) -> Result<(), carom_output::Error>,
+    ),
 ) -> Result<(Input, carom_case::schema::Case, Built), u8> {
     let input = Input::read(case, set).map_err(|problems| refuse(&[], &problems))?;
     let refused = |problems: Vec<Problem>| {
@@ -58,7 +68,7 @@ pub fn load_with(
         code
     };
     let (parsed, locator) = carom_case::parse(&input).map_err(refused)?;
-    let built = carom_case::build(&parsed, &locator, &input).map_err(refused)?;
+    let built = build(&parsed, &locator, &input).map_err(refused)?;
     Ok((input, parsed, built))
 }
 
@@ -68,8 +78,13 @@ pub fn keep_offenders(case: &Path, problems: &[Problem]) -> Result<(), carom_out
     offenders.try_for_each(|cells| cells.write(case))
 }
 
+/// Prints problems; returns the exit code.
 pub fn refuse(sources: &[Source], problems: &[Problem]) -> u8 {
     let styled = std::io::stderr().is_terminal();
     terminal::write_styled(&diagnostics::render(sources, problems, styled));
-    BAD_INPUT
+    // another machine would take the case
+    match problems.iter().all(|problem| problem.lacks_memory) && !problems.is_empty() {
+        true => FAILED,
+        false => BAD_INPUT,
+    }
 }

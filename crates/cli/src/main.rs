@@ -15,6 +15,7 @@ mod ranks;
 mod report;
 mod resume;
 mod run;
+mod signals;
 mod study;
 mod sweep;
 mod terminal;
@@ -224,7 +225,7 @@ fn schema(reference: bool) -> u8 {
     }
     match serde_json::to_string_pretty(&carom_case::schema::json_schema()) {
         Ok(text) => {
-            out!("{text}");
+            terminal::write_json(&(text + "\n"));
             0
         }
         Err(error) => {

@@ -1,4 +1,4 @@
-//! `carom new`: templates, most of them cases of the project.
+//! `carom new`: templates, most of them cases of the project. A case that shows what is worth a look has a template that ends well.
 
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
@@ -26,19 +26,19 @@ const TEMPLATES: [Template; 10] = [
     Template {
         name: "two-bars-newmark",
         shows: "two bars, Newmark with the displacement law",
-        case: include_str!("../../../cases/two-bars-newmark/case.toml"),
+        case: include_str!("../templates/two-bars-newmark.toml"),
         beside: &[],
     },
     Template {
         name: "bar-on-wall",
         shows: "a bar on a rigid wall",
-        case: include_str!("../../../cases/bar-on-wall/case.toml"),
+        case: include_str!("../templates/bar-on-wall.toml"),
         beside: &[],
     },
     Template {
         name: "block-drop",
         shows: "a 3D block on a rigid plane, with its Gmsh files",
-        case: include_str!("../../../cases/block-drop/case.toml"),
+        case: include_str!("../templates/block-drop.toml"),
         beside: &[
             (
                 "block.geo",
@@ -68,7 +68,7 @@ const TEMPLATES: [Template; 10] = [
     Template {
         name: "friction",
         shows: "a crate on a moving belt in the plane, with friction",
-        case: include_str!("../../../cases/conveyor/case.toml"),
+        case: include_str!("../templates/friction.toml"),
         beside: &[
             (
                 "crate.geo",

@@ -1,6 +1,6 @@
 //! The progress of a run on a terminal: time left, simulated time, energy residual.
 
-use carom_dynamics::{Error, Observer, Scope, Stepper};
+use carom_dynamics::{Error, Interrupt, Observer, Scope, Stepper};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Parts of the simulated time that the bar counts.
@@ -10,11 +10,12 @@ const PARTS: f64 = 1e4;
 pub struct Progress {
     bar: ProgressBar,
     end: f64,
+    interrupt: Interrupt,
 }
 
 impl Progress {
-    /// A bar up to a simulated time in s. `hidden` draws nothing.
-    pub fn new(end: f64, hidden: bool) -> Progress {
+    /// A bar up to a simulated time in s, of a run that `interrupt` ends. `hidden` draws nothing.
+    pub fn new(end: f64, hidden: bool, interrupt: Interrupt) -> Progress {
         let parts = Some(PARTS as u64);
         let bar = ProgressBar::with_draw_target(parts, ProgressDrawTarget::stderr_with_hz(5));
         if hidden {
@@ -22,7 +23,11 @@ impl Progress {
         }
         let style = ProgressStyle::with_template("{bar:30} {percent} %, {eta} left, {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-        Progress { bar, end }
+        Progress {
+            bar,
+            end,
+            interrupt,
+        }
     }
 
     fn show(&self, time: f64) {
@@ -55,5 +60,9 @@ impl Observer for Progress {
         self.show(run.state().time);
         self.bar.finish_and_clear();
         Ok(())
+    }
+
+    fn interrupt(&self) -> Option<&Interrupt> {
+        Some(&self.interrupt)
     }
 }

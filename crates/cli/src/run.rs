@@ -2,22 +2,21 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::Finished;
 use carom_dynamics::RankShare;
 
 use carom_output::plot::quantity;
 use carom_output::summary::{Contact, Newton};
-use carom_output::{Grade, Level, Summary};
+use carom_output::{Grade, Level, Margin, Summary};
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
 use crate::load::{load_on, warn_of_ranks};
 use crate::progress::Progress;
 use crate::ranks::all_have;
-use crate::terminal::{err, line, out};
+use crate::signals;
+use crate::terminal::{err, line, out, write_json};
 
 /// Arguments of `carom run`.
 #[derive(clap::Args)]
@@ -85,7 +84,7 @@ pub fn end(ended: Result<Option<Finished>, carom_case::Failed>, folder: &Path, j
                         out!("  {}", busiest(share));
                     }
                 }
-                Some(Ok(text)) => out!("{text}"),
+                Some(Ok(text)) => write_json(&text),
                 Some(Err(error)) => {
                     err!("error: {error}");
                     return FAILED;
@@ -107,21 +106,17 @@ pub fn end(ended: Result<Option<Finished>, carom_case::Failed>, folder: &Path, j
     }
 }
 
-/// A run up to a simulated time (s) with its progress on the terminal, which Ctrl-C, SIGTERM and SIGHUP stop before the next step.
+/// A run up to a simulated time (s) with its progress on the terminal, which Ctrl-C, SIGTERM and SIGHUP stop within the step under way; on
+/// several ranks before the next one.
 pub fn until_stopped<T>(
     until: f64,
     quiet: bool,
     run: impl FnOnce(&mut Progress, &dyn Fn() -> bool) -> T,
 ) -> T {
-    let stopped = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stopped);
-    // without a handler Ctrl-C ends the program at once, as it would any other
-    let handled = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed));
-    if let Err(error) = handled {
-        tracing::warn!("Ctrl-C will not leave a summary: {error}");
-    }
-    let mut progress = Progress::new(until, quiet || !std::io::stderr().is_terminal());
-    run(&mut progress, &|| stopped.load(Ordering::Relaxed))
+    let interrupt = signals::interrupt("a summary");
+    let hidden = quiet || !std::io::stderr().is_terminal();
+    let mut progress = Progress::new(until, hidden, interrupt.clone());
+    run(&mut progress, &|| interrupt.is_set())
 }
 
 /// The summary for people: forces, impulses, energy, verdict, where to look.
@@ -181,6 +176,10 @@ fn print(summary: &Summary, folder: &Path) {
     let together: Vec<&String> = together.flat_map(|level| &level.contacts).collect();
     for (name, level) in &summary.levels {
         print_level(name, level);
+    }
+    for check in &summary.allowables {
+        let of = format!("{} of {} {}", check.quantity, check.kind, check.name);
+        print_margin("  ", &of, (&check.margin, &check.unit));
     }
     let alone = summary.contacts.iter();
     let alone = alone.filter(|(name, _)| !together.contains(name));
@@ -361,16 +360,23 @@ fn print_level(name: &str, level: &Level) {
     let margins = [
         ("force", "N", &level.force_margin),
         ("energy", "J", &level.energy_margin),
+        ("stroke", "m", &level.stroke_margin),
+        ("crush", "m", &level.crush_margin),
     ];
     for (of, unit, margin) in margins {
         let Some(margin) = margin else { continue };
-        if let Some(left) = margin.margin {
-            let allowable = quantity(margin.allowable, unit);
-            out!(
-                "    margin to the allowable {of} of {allowable}: {:.0} %",
-                100.0 * left
-            );
-        }
+        print_margin("    ", of, (margin, unit));
+    }
+}
+
+/// What is left to an allowable, if anything was found.
+fn print_margin(indent: &str, of: &str, (margin, unit): (&Margin, &str)) {
+    if let Some(left) = margin.margin {
+        let allowable = quantity(margin.allowable, unit);
+        out!(
+            "{indent}margin to the allowable {of} of {allowable}: {:.0} %",
+            100.0 * left
+        );
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use carom_case::{Sweep, SweepError};
 use carom_dynamics::Observer;
@@ -13,6 +11,7 @@ use carom_output::compare::{Outcome, Variant};
 use crate::exit::{FAILED, INTERRUPTED};
 use crate::load;
 use crate::progress::Progress;
+use crate::signals;
 use crate::terminal::{err, line, out};
 
 /// Letters in a line of a table.
@@ -49,24 +48,20 @@ impl Arguments {
 
     /// Gives `work` the way to make the runs: with a progress bar each, until Ctrl-C.
     pub fn sweep<T>(&self, folder: &Path, work: impl FnOnce(&Sweep) -> T) -> T {
-        let stopped = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&stopped);
-        if let Err(error) = ctrlc::set_handler(move || flag.store(true, Ordering::Relaxed)) {
-            tracing::warn!("Ctrl-C will not leave a table: {error}");
-        }
+        let interrupt = signals::interrupt("a table");
         let hidden = self.quiet || self.jobs > 1 || !std::io::stderr().is_terminal();
         let watch = |name: &str, end: f64| -> Box<dyn Observer> {
             if !hidden {
                 err!("{name}");
             }
-            Box::new(Progress::new(end, hidden))
+            Box::new(Progress::new(end, hidden, interrupt.clone()))
         };
         work(&Sweep {
             folder,
             contact: self.contact.as_deref(),
             jobs: self.jobs,
             watch: &watch,
-            stop: &|| stopped.load(Ordering::Relaxed),
+            stop: &|| interrupt.is_set(),
         })
     }
 }

@@ -54,6 +54,13 @@ pub fn write_out(text: fmt::Arguments) {
     keep(io::stdout().write_all(visible(&text).as_bytes()));
 }
 
+/// Writes JSON to standard output. What a terminal would obey becomes an escape of JSON, which is the same letter to a program that reads it.
+pub fn write_json(text: &str) {
+    if !SILENT.load(Ordering::Relaxed) {
+        keep(io::stdout().write_all(as_json(text).as_bytes()));
+    }
+}
+
 /// Writes text to standard error, with control characters made visible.
 pub fn write_err(text: fmt::Arguments) {
     let text = text.to_string();
@@ -144,6 +151,22 @@ pub fn shortened(text: &str, longest: usize) -> Cow<'_, str> {
     }
 }
 
+/// JSON with `\u202e` for each letter that a terminal obeys: those are in its strings alone, but for line feeds between its lines.
+fn as_json(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len() + 8);
+    for letter in text.chars() {
+        match obeyed(letter) && letter != '\n' {
+            true => {
+                for unit in letter.encode_utf16(&mut [0; 2]) {
+                    shown.push_str(&format!("\\u{unit:04x}"));
+                }
+            }
+            false => shown.push(letter),
+        }
+    }
+    shown
+}
+
 fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     if !text.contains(&hidden) {
         return Cow::Borrowed(text);
@@ -177,6 +200,16 @@ mod tests {
         );
         assert_eq!(line("a\nb"), "a\\nb");
         assert!(matches!(line("plain é"), Cow::Borrowed("plain é")));
+    }
+
+    #[test]
+    fn json_stays_what_it_is_and_shows_what_a_terminal_would_obey() {
+        let title = "a\u{202e}\u{9b}b\u{7f} é\n\u{1b}";
+        let text = serde_json::to_string_pretty(&serde_json::json!({ "title": title })).unwrap();
+        let shown = as_json(&text);
+        assert!(!shown.contains(|c| obeyed(c) && c != '\n'), "{shown}");
+        let back: serde_json::Value = serde_json::from_str(&shown).unwrap();
+        assert_eq!(back["title"], title);
     }
 
     #[test]

@@ -9,6 +9,7 @@
 
 use carom_algebra::solver::SparseRow;
 use carom_contact::Rows;
+use carom_ranks::memory::{LITTLE, Short, room_for};
 
 use crate::groups::Groups;
 use crate::operator::{Column, Operators};
@@ -73,6 +74,19 @@ impl Blocks {
         self.places.clear();
         self.entries.clear();
     }
+}
+
+/// What a candidate shares with others: the unknowns of its `width` rows that are not held, or their factors.
+fn keys<'a>(
+    (point, width): (u32, u32),
+    (rows, fixed): (&'a Rows, &'a [bool]),
+    operators: &'a Operators,
+) -> impl Iterator<Item = usize> + 'a {
+    let numbers = point * width..(point + 1) * width;
+    let dofs = numbers.flat_map(move |number| rows.row(number as usize).0);
+    let dofs = dofs.map(|&dof| dof as usize);
+    let free = dofs.filter(move |&dof| !fixed[dof]);
+    free.map(move |dof| operators.key(dof))
 }
 
 /// Columns of the points met so far, and D over the current candidates.
@@ -148,12 +162,8 @@ impl Compliance {
         match together {
             true => self.groups.join_all(candidates.len()),
             false => {
-                let keys = |point: u32| {
-                    let numbers = point * width..(point + 1) * width;
-                    let dofs = numbers.flat_map(|number| rows.row(number as usize).0);
-                    let dofs = dofs.map(|&dof| dof as usize).filter(|&dof| !fixed[dof]);
-                    dofs.map(|dof| operators.key(dof))
-                };
+                let operators = &*operators;
+                let keys = |point: u32| keys((point, width), (rows, fixed), operators);
                 self.groups.split(candidates, keys, operators.keys());
             }
         }
@@ -167,6 +177,39 @@ impl Compliance {
         blocks.places.sort_unstable_by_key(|place| place.0);
         self.blocks = blocks;
         self.version += 1;
+    }
+
+    /// Whether there is room for D over these candidates, of the same arguments as [`Compliance::update`].
+    ///
+    /// # Errors
+    /// There is none.
+    pub(crate) fn has_room(
+        &self,
+        (candidates, width, together): (&[u32], u32, bool),
+        rows: &Rows,
+        fixed: &[bool],
+        operators: &Operators,
+    ) -> Result<(), Short> {
+        let bytes = |points: usize| 8 * (points as u64 * u64::from(width)).pow(2);
+        let there = 8 * self.blocks.entries.len() as u64;
+        if operators.iterate() || bytes(candidates.len()) <= there.max(LITTLE) {
+            return Ok(());
+        }
+        let mut groups = Groups::default();
+        let keys = |point: u32| keys((point, width), (rows, fixed), operators);
+        match together {
+            true => groups.join_all(candidates.len()),
+            false => groups.split(candidates, keys, operators.keys()),
+        }
+        let needed: u64 = groups.ranges().map(|group| bytes(group.len())).sum();
+        if needed <= there {
+            return Ok(());
+        }
+        let count = candidates.len();
+        room_for(
+            format_args!("the compliance of {count} contact points"),
+            needed,
+        )
     }
 
     /// D over the last group. `before`: the blocks before; `stale`: rows whose entries have changed.

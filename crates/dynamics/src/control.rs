@@ -55,6 +55,10 @@ pub fn adapt(
         attempts += 1;
         dt = run.stable(dt)?;
         let outcome = run.attempt(dt, control.next(rules, largest));
+        if outcome.as_ref().is_err_and(Error::is_of_any_step) {
+            run.withdraw();
+            return outcome.map(|()| (control, attempts));
+        }
         let event = match &outcome {
             Err(_) => Some((Event::Failure, dt)),
             Ok(()) => {

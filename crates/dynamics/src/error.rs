@@ -2,8 +2,10 @@
 
 use std::fmt;
 
+use carom_ranks::memory::Short;
 use thiserror::Error as ThisError;
 
+use crate::state::State;
 use crate::system::System;
 
 /// A node of the mesh that a message names.
@@ -262,6 +264,17 @@ pub enum Error {
         /// Cause.
         cause: String,
     },
+    /// What a step needs has no room.
+    #[error("step {step}: {cause}")]
+    Memory {
+        /// Number of the step.
+        step: u64,
+        /// What, and how much.
+        cause: Short,
+    },
+    /// Somebody asked for the end of the step under way; the state is the one before it.
+    #[error("interrupted")]
+    Interrupted,
     /// A stepper of another crate failed.
     #[error(transparent)]
     Stepper(Box<dyn std::error::Error + Send + Sync>),
@@ -271,6 +284,21 @@ pub enum Error {
     /// An observer failed: the results could not be written.
     #[error("{0}")]
     Observer(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl Error {
+    /// The step from a state has no room.
+    pub(crate) fn no_room(state: &State, cause: Short) -> Error {
+        Error::Memory {
+            step: state.step + 1,
+            cause,
+        }
+    }
+
+    /// Whether a smaller step would end in the same way.
+    pub(crate) fn is_of_any_step(&self) -> bool {
+        matches!(self, Error::Interrupted | Error::Memory { .. })
+    }
 }
 
 /// Constraints that leave a motion free, as an end of a message.

@@ -44,6 +44,7 @@ mod watch;
 
 pub use alike::Alike;
 pub use assembly_energy::{AssemblyEnergies, AssemblyEnergy};
+pub use carom_algebra::Interrupt;
 use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;

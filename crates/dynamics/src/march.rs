@@ -1,5 +1,6 @@
 //! The loop over the steps.
 
+use carom_algebra::Interrupt;
 use carom_ranks::Ranks;
 use serde::Serialize;
 
@@ -38,6 +39,8 @@ pub trait Stepper {
     fn agree(&mut self, own: Going) -> Going {
         own
     }
+    /// Ends a step early where this is set: it then fails with [`Error::Interrupted`]. Not asked of ranks, which all take the same steps.
+    fn heed(&mut self, _interrupt: &Interrupt) {}
     /// Where several processes take the steps, brings to the first of them what it has to have of the state after a step. All ask together.
     fn bring(&mut self, _scope: Scope) {}
 }
@@ -172,6 +175,10 @@ pub trait Observer {
     fn looks(&self, _run: &dyn Stepper) -> Scope {
         Scope::All
     }
+    /// What ends the step under way early, of an observer that lets somebody do so: it is asked before the first step of a run in one process.
+    fn interrupt(&self) -> Option<&Interrupt> {
+        None
+    }
 }
 
 /// How a run ended.
@@ -184,7 +191,7 @@ pub enum Outcome {
 }
 
 /// Steps from the state of `run` to the end time: to the first instant not before it, to within a millionth of the largest
-/// step. `stop` is asked before each step.
+/// step. `stop` is asked before each step; an [`Interrupt`] that the run heeds ends the step under way, which leaves nothing behind.
 ///
 /// # Errors
 /// A failed step or observer; observers have finished with the last good state.
@@ -250,7 +257,10 @@ fn steps(
             Going::On if at_end => return Ok(Outcome::Done),
             Going::On => {}
         }
-        run.step()?;
+        match run.step() {
+            Err(Error::Interrupted) => return Ok(Outcome::Interrupted),
+            taken => taken?,
+        }
         tell(run, observers)?;
     }
 }

@@ -147,6 +147,10 @@ pub trait ContactLaw {
     fn crush_energy(&self, _crush: f64) -> f64 {
         0.0
     }
+    /// What stays of this largest penetration (m) without a force, m.
+    fn stays(&self, _crush: f64) -> f64 {
+        0.0
+    }
     /// Whether tensile forces are cut off once the statuses stand.
     fn clips(&self) -> bool;
 }

@@ -75,6 +75,11 @@ impl Law {
         self.get().crush_energy(crush)
     }
 
+    /// [`ContactLaw::stays`].
+    pub fn stays(&self, crush: f64) -> f64 {
+        self.get().stays(crush)
+    }
+
     /// [`ContactLaw::has_weak_form`].
     pub fn has_weak_form(&self) -> bool {
         self.get().has_weak_form()

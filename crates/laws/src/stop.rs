@@ -232,6 +232,13 @@ impl ContactLaw for Stop {
         self.curve.energy(crush) - 0.5 * force * force / self.curve.stiffness(0)
     }
 
+    fn stays(&self, crush: f64) -> f64 {
+        match self.crush {
+            Crush::Recovered => 0.0,
+            Crush::Permanent => self.permanent(crush),
+        }
+    }
+
     fn clips(&self) -> bool {
         self.adhesion == Adhesion::Clip
     }
@@ -413,6 +420,8 @@ mod tests {
         // the area between loading to 3 and unloading: 5 + 12.5 + 15.25, less 15.5² / 20
         assert_eq!(law.crushed(0.0, -3.5), 3.0);
         assert!((law.crush_energy(3.0) - (32.75 - 15.5 * 15.5 / 20.0)).abs() < 1e-13);
+        // the line of unloading, of 10 N/m, meets no force 1.55 m before 3 m
+        assert!((law.stays(3.0) - 1.45).abs() < 1e-14 && law.stays(0.0) == 0.0);
         assert_eq!(law.crushed(3.0, -1.0), 3.0);
         // the first piece is elastic
         assert_eq!(law.crush_energy(0.9), 0.0);

@@ -9,6 +9,7 @@
 //!
 //! The equations are solved by a dense factor, or, where D is the product of sparse rows or not known, by conjugate gradients.
 
+use carom_algebra::Interrupt;
 use carom_algebra::dense::DenseCholesky;
 use carom_laws::{End, Relation, Status};
 
@@ -37,6 +38,12 @@ pub enum Failure {
         passes: usize,
         /// The candidate.
         candidate: usize,
+    },
+    /// Somebody asked for the end.
+    #[error("interrupted after {passes} passes")]
+    Interrupted {
+        /// Passes made.
+        passes: usize,
     },
 }
 
@@ -110,6 +117,8 @@ pub struct Interface {
     pub passes: usize,
     /// The candidate from which on statuses changed one at a time, if blocks of changes went in circles.
     pub circled: Option<usize>,
+    /// Ends passes without a solution where it is set.
+    pub interrupt: Interrupt,
     factor: Option<DenseCholesky>,
     factor_of: (u64, Vec<(u32, Status)>),
     iterated: Iterated,
@@ -167,6 +176,9 @@ impl Interface {
         let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
         let limit = 50 + 10 * n;
         for pass in 1..=limit {
+            if self.interrupt.is_set() {
+                return Err(Failure::Interrupted { passes: pass - 1 });
+            }
             self.passes = pass;
             if pass > limit / 2 {
                 self.rough = 0.0;

@@ -45,9 +45,10 @@ pub use impacts::{ImpactRow, ImpactTable};
 pub use pvd::Collection;
 pub use report::Report;
 pub use results::{
-    BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Piece, Pieces, Probe, Reference,
-    Results, Settings, Spectrum, Zoning, model_picture, qualities, watched,
+    AllowableSettings, Bearer, BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Piece,
+    Pieces, Probe, Reference, Results, Settings, Spectrum, Zoning, model_picture, qualities,
+    watched,
 };
-pub use statistics::{Allowable, Level, Statistics, takes_energy};
+pub use statistics::{Allowable, Check, Level, Margin, Statistics, takes_energy};
 pub use summary::Summary;
 pub use verdict::{Grade, Verdict};

@@ -15,8 +15,11 @@ use crate::page::anchors::section;
 use crate::page::{Data, PROGRAM, STYLE};
 use crate::plot::{digits, quantity, scientific};
 use crate::results::{BodyQuality, Tile};
-use crate::summary::Summary;
+use crate::summary::{Angular, Summary};
 use crate::{Error, ImpactRow, atomic};
+
+/// Part of the largest number of its kind that the sums of a run leave of a zero.
+const ROUNDING: f64 = 1e-12;
 
 /// What the page shows.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +66,8 @@ impl Report<'_> {
             many => self.summary.contacts.values().any(|contact| contact.impacts > 1),
             hidden => impacts.saturating_sub(self.impacts.len()),
             figures,
+            moved => self.summary.maxima.displacement.as_ref().map_or(0.0, |most| most.value),
+            turning => self.summary.momentum.angular.as_ref().map_or(0.0, Angular::largest),
             case => self.case,
             tiles => Serde(self.tiles),
             quality => Serde(self.quality),
@@ -105,6 +110,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, Error> {
         show(&value, |x| quantity(x, unit))
     });
     environment.add_filter("exact", |value: Value| show(&value, exact));
+    environment.add_filter("near", near);
     environment.add_filter("percent", |value: Value| show(&value, percent));
     environment.add_filter("section", |line: &str| section(line));
     environment.add_filter("code", |text: &str| Value::from_safe_string(code(text)));
@@ -143,6 +149,14 @@ fn options(code: &str) -> String {
 
 fn show(value: &Value, text: impl Fn(f64) -> String) -> String {
     f64::try_from(value.clone()).map_or_else(|_| NOTHING.to_owned(), text)
+}
+
+/// What is rounding beside numbers of this size is zero; what is no number stays as it is.
+fn near(value: Value, size: f64) -> Value {
+    match f64::try_from(value.clone()) {
+        Ok(number) if number.abs() <= ROUNDING * size => Value::from(0.0),
+        _ => value,
+    }
 }
 
 /// A number of a balance: seven digits, or a power of ten where it is very small or very large.

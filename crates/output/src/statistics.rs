@@ -84,6 +84,23 @@ pub struct Allowable {
     pub force: Option<f64>,
     /// Energy taken up, J.
     pub energy: Option<f64>,
+    /// Penetration, of a stop its stroke, over the run, m.
+    pub stroke: Option<f64>,
+    /// Crush that stays, m.
+    pub crush: Option<f64>,
+}
+
+/// How deep a contact went over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Depth {
+    /// The contact.
+    pub contact: usize,
+    /// Largest penetration, m.
+    pub stroke: f64,
+    /// Largest crush of a point that stays, m.
+    pub crush: f64,
+    /// When its force was largest, s.
+    pub time: f64,
 }
 
 /// A level of contacts.
@@ -97,6 +114,12 @@ pub struct Level {
     pub force_margin: Option<Margin>,
     /// Against the allowable energy of an impact, J; `None` without one.
     pub energy_margin: Option<Margin>,
+    /// Of the largest penetration against the allowable stroke, m; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stroke_margin: Option<Margin>,
+    /// Of the crush that stays against the allowable one, m; `None` without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crush_margin: Option<Margin>,
 }
 
 /// A largest value against what is allowed.
@@ -108,8 +131,37 @@ pub struct Margin {
     pub found: f64,
     /// Allowable over found, less one: negative where it is exceeded. `None` where nothing was found.
     pub margin: Option<f64>,
-    /// The contact with the largest value, and when its impact began, s.
+    /// What has the largest value, and when, s: of an impact its start, of a stroke or a crush the largest force of the contact.
     pub governing: Option<(String, f64)>,
+}
+
+/// A largest value of the run against what is allowed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Check {
+    /// What is compared: `von Mises stress`.
+    pub quantity: String,
+    /// Of what: `body`, `support` or `spring`.
+    pub kind: String,
+    /// Its name in the case.
+    pub name: String,
+    /// Unit of the values.
+    pub unit: String,
+    /// The values. The governing one is what it is of; a stress is that of the kept instants ([`crate::maxima::Maxima`]).
+    pub margin: Margin,
+}
+
+impl Margin {
+    /// Of a largest value, with what it is of and when; `None` where nothing was found.
+    pub(crate) fn of(allowable: f64, found: Option<(f64, (String, f64))>) -> Margin {
+        let found = found.filter(|(value, _)| *value > 0.0);
+        let value = found.as_ref().map(|(value, _)| *value);
+        Margin {
+            allowable,
+            found: value.unwrap_or(0.0),
+            margin: value.map(|value| allowable / value - 1.0),
+            governing: found.map(|(_, governing)| governing),
+        }
+    }
 }
 
 impl Statistics {
@@ -186,10 +238,10 @@ pub fn takes_energy(system: &System, contact: usize) -> bool {
 }
 
 impl Level {
-    /// The level of these contacts. `impacts`: theirs; `takes`: whether a contact takes up energy ([`takes_energy`]).
+    /// The level of these contacts. `impacts`, `depths`: theirs; `takes`: whether a contact takes up energy ([`takes_energy`]).
     pub fn of<'a>(
         contacts: &[usize],
-        impacts: &[&Impact],
+        (impacts, depths): (&[&Impact], &[Depth]),
         name: impl Fn(usize) -> &'a str + Copy,
         (friction_loss, allowable): (f64, Allowable),
         takes: impl Fn(usize) -> bool,
@@ -199,20 +251,24 @@ impl Level {
         let margin = |allowed: Option<f64>, judged: &[&Impact], value: fn(&Impact) -> f64| {
             let order = |a: &&&Impact, b: &&&Impact| value(a).total_cmp(&value(b));
             let governing = judged.iter().filter(|i| value(i) > 0.0).max_by(order);
-            let found = governing.map_or(0.0, |impact| value(impact));
-            Some(Margin {
-                allowable: allowed?,
-                found,
-                margin: governing.map(|_| allowed.unwrap_or_default() / found - 1.0),
-                governing: governing
-                    .map(|impact| (name(impact.contact as usize).to_owned(), impact.start)),
-            })
+            let told = |impact: &&Impact| {
+                let name = name(impact.contact as usize).to_owned();
+                (value(impact), (name, impact.start))
+            };
+            Some(Margin::of(allowed?, governing.map(told)))
+        };
+        let deepest = |allowed: Option<f64>, value: fn(&Depth) -> f64| {
+            let order = |a: &&Depth, b: &&Depth| value(a).total_cmp(&value(b));
+            let told = |depth: &Depth| (value(depth), (name(depth.contact).to_owned(), depth.time));
+            Some(Margin::of(allowed?, depths.iter().max_by(order).map(told)))
         };
         Level {
             contacts: contacts.iter().map(|k| name(*k).to_owned()).collect(),
             statistics: Statistics::of(impacts, name, friction_loss),
             force_margin: margin(allowable.force, impacts, |i| i.peak_force),
             energy_margin: margin(allowable.energy, &taking, |i| i.energy_taken),
+            stroke_margin: deepest(allowable.stroke, |d| d.stroke),
+            crush_margin: deepest(allowable.crush, |d| d.crush),
         }
     }
 }
@@ -245,8 +301,18 @@ mod tests {
         let allowable = Allowable {
             force: Some(5.0),
             energy: Some(0.4),
+            stroke: Some(2e-3),
+            crush: Some(1e-3),
         };
-        let level = Level::of(&[0, 1], &impacts, name, (3.0, allowable), |_| true);
+        let depth = |contact, stroke, crush| Depth {
+            contact,
+            stroke,
+            crush,
+            time: 7.0,
+        };
+        let depths = [depth(0, 1e-3, 0.0), depth(1, 4e-3, 5e-4)];
+        let of_both = (&impacts[..], &depths[..]);
+        let level = Level::of(&[0, 1], of_both, name, (3.0, allowable), |_| true);
         let found = &level.statistics;
         assert_eq!(
             (found.count, found.peak_force, found.energy_taken),
@@ -263,9 +329,13 @@ mod tests {
         let energy = level.energy_margin.unwrap();
         assert!((energy.margin.unwrap() + 0.2).abs() < 1e-15);
         assert_eq!(energy.governing.unwrap().0, "a");
+        let stroke = level.stroke_margin.unwrap();
+        assert!((stroke.margin.unwrap() + 0.5).abs() < 1e-15);
+        assert_eq!(stroke.governing.unwrap(), ("b".to_owned(), 7.0));
+        assert!((level.crush_margin.unwrap().margin.unwrap() - 1.0).abs() < 1e-15);
         // of contacts that take up no energy there is no margin of it
         let judged = |takes: fn(usize) -> bool| {
-            let level = Level::of(&[0, 1], &impacts, name, (3.0, allowable), takes);
+            let level = Level::of(&[0, 1], of_both, name, (3.0, allowable), takes);
             level.energy_margin.unwrap()
         };
         assert_eq!(judged(|k| k == 1).found, 0.1);
@@ -276,9 +346,9 @@ mod tests {
     fn without_impacts_there_is_nothing_and_no_margin() {
         let allowable = Allowable {
             force: Some(5.0),
-            energy: None,
+            ..Allowable::default()
         };
-        let level = Level::of(&[0], &[], |_| "a", (0.0, allowable), |_| true);
+        let level = Level::of(&[0], (&[], &[]), |_| "a", (0.0, allowable), |_| true);
         assert_eq!(level.statistics.count, 0);
         assert_eq!(level.force_margin.unwrap().margin, None);
         assert_eq!(level.energy_margin, None);

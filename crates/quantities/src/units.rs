@@ -117,6 +117,22 @@ pub enum UnitError {
     },
 }
 
+impl UnitError {
+    /// The unit that was meant, where that can be told: the known one nearest to an unknown one, or the standard gravity `gn` where an acceleration is in
+    /// `g`, which is a gram.
+    pub fn meant(&self) -> Option<String> {
+        const GRAM: Dimension = dimension(0, 1, 0);
+        const ACCELERATION: Dimension = dimension(1, 0, -2);
+        match self {
+            UnitError::UnknownSymbol { nearest, .. } => nearest.clone(),
+            UnitError::WrongDimension { found, wanted } => {
+                (*found == GRAM && *wanted == ACCELERATION).then(|| "gn".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
+
 /// `an area`, `a length`.
 pub fn with_article(noun: &str) -> String {
     let article = if noun.starts_with(['a', 'e', 'i', 'o', 'u']) {
@@ -392,6 +408,9 @@ mod tests {
         assert!(si("1e9999999999999 m", "length").is_err());
         let wrong = si("254 ms", "length").unwrap_err();
         assert_eq!(wrong.to_string(), "a time instead of a length");
+        assert_eq!(wrong.meant(), None);
+        let in_grams = si("0.3 g", "acceleration").unwrap_err();
+        assert_eq!(in_grams.meant().as_deref(), Some("gn"));
         assert_eq!(
             si("3 Mpa", "stress"),
             Err(UnitError::UnknownSymbol {

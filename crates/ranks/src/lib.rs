@@ -5,6 +5,7 @@
 
 mod engine;
 mod link;
+pub mod memory;
 mod partition;
 mod threads;
 

@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use carom_algebra::Interrupt;
 use serde::{Deserialize, Serialize};
 
 use crate::error::Error;
@@ -422,6 +423,12 @@ impl Stepper for Whole {
             costs.zones.push(own);
         }
         costs
+    }
+
+    fn heed(&mut self, interrupt: &Interrupt) {
+        for driver in &mut self.zones.drivers {
+            driver.heed(interrupt);
+        }
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {

@@ -11,6 +11,7 @@ use super::supernodal::analyse;
 use super::sweep::{Backward, Forward, ForwardLanes, Panels};
 use crate::ordering::{self, Ordering, Place, counted};
 use crate::{Error, csr::Csr};
+use carom_ranks::memory::room_for;
 use pulp::Arch;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -102,6 +103,8 @@ impl Cholesky {
         let connected = &order.permutation[..order.connected];
         let fronts = Fronts::new(&panels, matrix, connected, &position);
         let (entries, flops) = panels.work();
+        let needed = 8 * (symbolic.len_val() + fronts.most_in_use(&panels)) as u64;
+        room_for(format_args!("the factor of {} unknowns", matrix.n), needed)?;
         let isolated = matrix.n - order.connected;
         let mut factor = Self {
             values: vec![0.0; symbolic.len_val()],

@@ -91,7 +91,7 @@ impl Fronts {
     }
 
     /// Numbers that fronts leave to parents, the most that are there at once where they come one after the other.
-    fn most_in_use(&self, panels: &Panels) -> usize {
+    pub fn most_in_use(&self, panels: &Panels) -> usize {
         let square = |s: u32| panels.list[s as usize].below.pow(2);
         let (mut now, mut most) = (0, 0);
         for s in 0..self.parent.len() as u32 {

@@ -29,6 +29,10 @@ pub(super) struct Builder<'a> {
     pub(super) folder: PathBuf,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub(super) reductions: Vec<(String, String)>,
+    /// Signals, and what they have in words.
+    pub(super) told_signals: Vec<(String, String)>,
+    /// Whether a reduction that is made anew is saved in its file.
+    pub(super) saves: bool,
 }
 
 impl<'a> Builder<'a> {
@@ -51,6 +55,8 @@ impl<'a> Builder<'a> {
                 .map_or_else(PathBuf::new, |source| PathBuf::from(&source.name)),
             folder: input.folder.clone(),
             reductions: Vec::new(),
+            told_signals: Vec::new(),
+            saves: true,
         };
         builder.plan = builder.plan_zones();
         builder

@@ -35,6 +35,8 @@ impl Builder<'_> {
                 .map_or(Allowable::default(), |allowable| Allowable {
                     force: allowable.force.map(|force| force.0),
                     energy: allowable.energy.map(|energy| energy.0),
+                    stroke: allowable.stroke.map(|stroke| stroke.0),
+                    crush: allowable.crush.map(|crush| crush.0),
                 });
             if allowable.energy.is_some() {
                 self.takes_energy(system, name, &contacts);

@@ -4,12 +4,17 @@ use std::path::Path;
 
 use carom_mesh::{Mesh, Placement, generate, halve_bars, read, refine};
 use carom_quantities::{Vector, units};
+use carom_ranks::memory::room_for;
 
 use super::{Builder, dimensions};
 use crate::error::Problem;
 use crate::input::{Input, names_in};
-use crate::rules::MOST_NODES;
+use crate::rules::{MOST_NODES, nodes_of};
 use crate::schema::{Count, Part, Placed};
+
+/// Bytes of a node with its share of the elements, of all that is kept of them in a run at the least. A run with hexahedra takes some five times as
+/// many without a factor.
+const NODE: f64 = 100.0;
 
 impl Builder<'_> {
     /// The mesh in metres.
@@ -30,11 +35,14 @@ impl Builder<'_> {
             parts.push((path, name.to_string(), part));
         }
         for (name, part) in mesh.generate.iter() {
-            parts.push((
-                format!("mesh.generate.{name}"),
-                name.to_string(),
-                generated(name, part),
-            ));
+            let path = format!("mesh.generate.{name}");
+            let elements = match part {
+                Part::Line(line) => std::slice::from_ref(&line.elements),
+                Part::Rectangle(rectangle) => &rectangle.elements[..],
+                Part::Box(part) => &part.elements[..],
+            };
+            self.has_room(&path, nodes_of(elements))?;
+            parts.push((path, name.to_string(), generated(name, part)));
         }
         if let Some(dimension) = mesh.dimension {
             for (_, _, part) in &mut parts {
@@ -99,6 +107,9 @@ impl Builder<'_> {
                 .push(problem.accepted([format!("at most {MOST_NODES:e} nodes")]));
             return None;
         }
+        if times > 0 {
+            self.has_room("mesh.refine", nodes)?;
+        }
         for _ in 0..times {
             match refine(&mesh) {
                 Ok(finer) => mesh = finer,
@@ -110,6 +121,23 @@ impl Builder<'_> {
             }
         }
         Some(mesh)
+    }
+
+    /// Nothing where this machine has no memory for so many nodes, after a problem.
+    fn has_room(&mut self, path: &str, nodes: f64) -> Option<()> {
+        let room = room_for(
+            format_args!("a mesh of {nodes:.1e} nodes"),
+            (NODE * nodes) as u64,
+        );
+        if let Err(short) = room {
+            let problem = Problem::new(path, short.to_string());
+            self.problems.push(Problem {
+                lacks_memory: true,
+                ..problem.accepted(["fewer elements"])
+            });
+            return None;
+        }
+        Some(())
     }
 
     /// A part from a file where it belongs.

@@ -2,6 +2,7 @@
 
 mod added;
 mod advice;
+mod allowables;
 mod arlequin;
 mod beams;
 mod bodies;
@@ -22,6 +23,7 @@ mod materials;
 mod mesh;
 mod nonlinear;
 mod obstacles;
+mod oscillators;
 mod penetration;
 mod pieces;
 mod plan;
@@ -49,7 +51,7 @@ mod zones;
 use std::sync::Arc;
 
 use carom_dynamics::{Model, Nonlinear, System};
-use carom_output::{LevelSettings, Spectrum};
+use carom_output::{AllowableSettings, LevelSettings, Spectrum};
 use carom_zones::Zoned;
 
 use crate::error::Problem;
@@ -81,6 +83,8 @@ pub struct Built {
     pub stage: Option<(f64, u32)>,
     /// Contacts that are judged together, in the order of their names.
     pub levels: Vec<LevelSettings>,
+    /// What bodies, supports and springs may bear.
+    pub allowables: Vec<AllowableSettings>,
     /// Probes, in the order of their names.
     pub probes: Vec<BuiltProbe>,
     /// The exact solution that the case names.
@@ -91,6 +95,8 @@ pub struct Built {
     pub doubts: Vec<String>,
     /// Bodies whose reduction has a file, and where the reduction comes from.
     pub reductions: Vec<(String, String)>,
+    /// Signals, and what they have in words.
+    pub signals: Vec<(String, String)>,
 }
 
 impl Built {
@@ -104,11 +110,13 @@ impl Built {
             end,
             stage: None,
             levels: Vec::new(),
+            allowables: Vec::new(),
             probes: Vec::new(),
             reference: None,
             warnings: Vec::new(),
             doubts: Vec::new(),
             reductions: Vec::new(),
+            signals: Vec::new(),
         }
     }
 }
@@ -138,6 +146,17 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
     build_with((case, locator, input), &[])
 }
 
+/// As [`build`], to look at: nothing is written, a reduction that has a file and is made anew is not saved.
+///
+/// # Errors
+/// As [`build`].
+pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
+    let mut builder = Builder::new(case, input);
+    builder.saves = false;
+    let built = builder.build(input, &[]);
+    finished(built, builder.problems, locator)
+}
+
 /// As [`build`], with forces that are in no case file.
 ///
 /// # Errors
@@ -148,9 +167,18 @@ pub fn build_with(
 ) -> Result<Built, Vec<Problem>> {
     let mut builder = Builder::new(case, input);
     let built = builder.build(input, forces);
+    finished(built, builder.problems, locator)
+}
+
+/// What is built, or the problems with their places.
+fn finished<T>(
+    built: Option<T>,
+    problems: Vec<Problem>,
+    locator: &Locator,
+) -> Result<T, Vec<Problem>> {
     match built {
-        Some(built) if builder.problems.is_empty() => Ok(built),
-        _ => Err(locator.locate_all(builder.problems)),
+        Some(built) if problems.is_empty() => Ok(built),
+        _ => Err(locator.locate_all(problems)),
     }
 }
 
@@ -162,10 +190,8 @@ pub fn build_with(
 pub fn model(case: &Case, locator: &Locator, input: &Input) -> Result<Model, Vec<Problem>> {
     let mut builder = Builder::new(case, input);
     let modelled = builder.model(input, &[]);
-    match modelled {
-        Some(modelled) if builder.problems.is_empty() => Ok(builder.in_one(modelled.model)),
-        _ => Err(locator.locate_all(builder.problems)),
-    }
+    let modelled = modelled.map(|modelled| builder.in_one(modelled.model));
+    finished(modelled, builder.problems, locator)
 }
 
 /// A model, and what is built of a case beside it.
@@ -321,11 +347,13 @@ impl Builder<'_> {
         self.able_to_act(&system);
         self.with_area(&system);
         self.fine_enough(system.dt);
+        self.warn_of_oscillators(&system);
         self.penetration(&system);
         self.moved(&system, &nodes);
         self.startable(&system);
         self.advise(&system);
         let levels = self.levels(&system);
+        let allowables = self.allowables(&system);
         self.probes_at_contacts(&probes, &system);
         let probes = self.weighed(probes, &system);
         let end = self.case.time.end.0;
@@ -338,11 +366,13 @@ impl Builder<'_> {
             end,
             stage: self.case.time.stage.map(|stage| (stage.end.0, stage.steps)),
             levels,
+            allowables,
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),
             doubts: std::mem::take(&mut self.doubts),
             reductions: std::mem::take(&mut self.reductions),
+            signals: std::mem::take(&mut self.told_signals),
         })
     }
 }

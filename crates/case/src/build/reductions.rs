@@ -103,7 +103,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Saves a reduction that was made anew, and notes where the reduction comes from.
+    /// Saves a reduction that was made anew, if reductions are saved, and notes where the reduction comes from.
     fn keep(
         &mut self,
         path: &str,
@@ -113,6 +113,12 @@ impl Builder<'_> {
     ) {
         let told = match source {
             Source::Saved => format!("read from '{file}'"),
+            Source::Made(_) if !self.saves => match existed {
+                true => format!(
+                    "made anew, since that in '{file}' is of something else; a run saves it there"
+                ),
+                false => format!("made anew; a run saves it to '{file}'"),
+            },
             Source::Made(bytes) => {
                 let written = atomic::write(&folder.join(file), |to| to.write_all(&bytes));
                 if let Err(error) = written {

@@ -4,6 +4,7 @@ use carom_algebra::rotation::Rotation;
 use carom_bodies::{BodySpec, Inertia, Kinematics};
 use carom_dynamics::ModelRigid;
 use carom_mesh::Mesh;
+use carom_output::plot::quantity;
 use carom_quantities::MomentOfInertia;
 
 use super::Builder;
@@ -49,10 +50,32 @@ impl Builder<'_> {
         }
         // what is unfit has been told
         let of_cells = Inertia::of_cells(mesh, spec).ok()?;
-        Some(ModelRigid {
-            inertia: self.inertia(mesh, path, rigid, of_cells)?,
-            spin,
-        })
+        let inertia = self.inertia(mesh, path, rigid, of_cells)?;
+        if rigid.inertia.is_some() {
+            self.warn_of_size(mesh, path, spec, &inertia);
+        }
+        Some(ModelRigid { inertia, spin })
+    }
+
+    /// Warns of a moment of inertia that is larger than that of all of the mass at the node that is furthest from the centre.
+    fn warn_of_size(&mut self, mesh: &Mesh, path: &str, spec: &BodySpec, inertia: &Inertia) {
+        let nodes = spec.cells.iter().flat_map(|cell| mesh.element_nodes(*cell));
+        let squares = nodes.map(|node| {
+            let x = mesh.nodes[*node as usize];
+            (0..3)
+                .map(|i| (x[i] - inertia.centre[i]).powi(2))
+                .sum::<f64>()
+        });
+        let most = inertia.mass * squares.fold(0.0, f64::max);
+        let axes = if mesh.dim == 3 { 0..3 } else { 2..3 };
+        let given = axes.map(|axis| inertia.moments[axis]).fold(0.0, f64::max);
+        // what people round
+        if given > most * (1.0 + 1e-3) {
+            let [given, most] = [given, most].map(|moment| quantity(moment, "kg m²"));
+            self.warnings.push(format!(
+                "{path}.rigid.inertia: {given} is more than its mass has anywhere in the body, {most} at the node that is furthest from the centre: are units and axes the ones that are meant?"
+            ));
+        }
     }
 
     /// Mass, centre and moments as given, and those of the cells where they are not.
@@ -100,10 +123,12 @@ impl Builder<'_> {
             );
             return None;
         }
-        Some(match moments[..] {
+        let moments = match moments[..] {
             [x, y, z] => [x.0, y.0, z.0],
             _ => [moments[0].0; 3],
-        })
+        };
+        self.warn_of_moments(path, moments);
+        Some(moments)
     }
 
     /// Refuses keys of bodies that deform.

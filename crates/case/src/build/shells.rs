@@ -191,7 +191,10 @@ impl Builder<'_> {
         let cells: Vec<ElementId> = found.iter().map(|defect| defect.cell).collect();
         let offenders = Offenders::new(format!("shell-{name}"), mesh, &cells);
         let file = offenders.path(&self.file);
-        let note = format!("`carom check` writes the cells to {}", file.display());
+        let note = format!(
+            "`carom check --cells` writes the cells to {}",
+            file.display()
+        );
         let accepted = "flat convex cells, all of a shell with their normals to the same side";
         let problem = Problem::new(path, message).accepted([accepted]).note(note);
         self.problems.push(Problem {

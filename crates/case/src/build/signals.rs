@@ -4,6 +4,7 @@ use std::path::Path;
 
 use carom_dynamics::Amplitude;
 use carom_mesh::read::file;
+use carom_output::plot::{digits, quantity};
 use carom_quantities::units::{Dimension, parse_quantity};
 use carom_signals::{Error, Record, Synthetic, Table, corrected};
 
@@ -17,6 +18,9 @@ use crate::schema::{
 
 /// Most bytes of a file of a signal, 256 MiB.
 const LARGEST: u64 = 256 << 20;
+
+/// Standard gravity, m/s².
+const GRAVITY: f64 = 9.80665;
 
 /// Velocity at the end of a record over its largest one, above which a support that follows it drifts away.
 const DRIFT: f64 = 1e-6;
@@ -86,6 +90,7 @@ impl Builder<'_> {
                     }
                 };
                 moved(&mut points);
+                self.tell(name, &points, ("acceleration", "m/s^2"));
                 let record = Record::new(points.points.clone());
                 let record = record.map_err(|error| self.no_function(&error, &points));
                 let record = record.ok()?;
@@ -104,6 +109,7 @@ impl Builder<'_> {
                     }
                 };
                 moved(&mut points);
+                self.tell(name, &points, ("displacement", "m"));
                 self.straight(&points).map(Course::Displacement)
             }
             (None, None, source) => {
@@ -118,9 +124,42 @@ impl Builder<'_> {
                     }
                 };
                 moved(&mut points);
+                self.tell(name, &points, ("factor", ""));
                 self.straight(&points).map(Course::Factor)
             }
         }
+    }
+
+    /// Notes what a signal has: its largest value with its unit, and how far its points are apart.
+    fn tell(&mut self, name: &str, points: &Points, (what, unit): (&str, &str)) {
+        let points = &points.points;
+        let size = |point: &[f64; 2]| point[1].abs();
+        let by_size = |a: &&[f64; 2], b: &&[f64; 2]| size(a).total_cmp(&size(b));
+        let (Some(largest), [first, .., last]) = (points.iter().max_by(by_size), &points[..])
+        else {
+            return;
+        };
+        let steps = points.windows(2).map(|pair| pair[1][0] - pair[0][0]);
+        let least = steps.clone().fold(f64::INFINITY, f64::min);
+        let most = steps.fold(0.0, f64::max);
+        // rounding of the times in a file
+        let apart = match most - least <= 1e-3 * most {
+            true => format!("every {}", quantity(most, "s")),
+            false => format!("{} to {} apart", quantity(least, "s"), quantity(most, "s")),
+        };
+        let gravity = match unit {
+            "m/s^2" if largest[1] != 0.0 => format!(", {} gn", digits(largest[1] / GRAVITY, 3)),
+            _ => String::new(),
+        };
+        let told = format!(
+            "{what}, largest {}{gravity} at {}; {} points {apart} from {} to {}",
+            quantity(largest[1], unit),
+            quantity(largest[0], "s"),
+            points.len(),
+            quantity(first[0], "s"),
+            quantity(last[0], "s"),
+        );
+        self.told_signals.push((name.to_owned(), told));
     }
 
     /// A record fitted to a spectrum.
@@ -331,7 +370,8 @@ impl Builder<'_> {
         match parse_quantity(&format!("1 {unit}"), wanted) {
             Ok(factor) => Some(factor),
             Err(error) => {
-                let problem = Problem::new(path, error.to_string()).found(unit);
+                let mut problem = Problem::new(path, error.to_string()).found(unit);
+                problem.nearest = error.meant();
                 self.problems.push(
                     problem.accepted([format!("a unit of {dimension}, such as {}", wanted.unit())]),
                 );

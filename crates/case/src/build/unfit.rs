@@ -158,7 +158,10 @@ impl Builder<'_> {
         }
         let offenders = Offenders::new(format!("overlap-{name}"), mesh, cells);
         let path = offenders.path(&self.file);
-        let note = format!("`carom check` writes the cells to {}", path.display());
+        let note = format!(
+            "`carom check --cells` writes the cells to {}",
+            path.display()
+        );
         Problem {
             offenders: Some(offenders),
             ..problem.note(note)

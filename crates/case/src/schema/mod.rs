@@ -64,8 +64,9 @@ pub use obstacle::{
     PolarCurve, PolarPoint, PolarProfile, Side, Sphere, Surface, Turn,
 };
 pub use output::{
-    Allowable, BarReference, Checkpoint, Field, Fields, Histories, Level, Mean, Motion, Output,
-    Probe, ProbeSpectrum, Reference, Sides,
+    Allowable, Allowables, BarReference, BodyAllowable, Checkpoint, Field, Fields, Histories,
+    Level, Mean, Motion, Output, Probe, ProbeSpectrum, Reference, Sides, SpringAllowable,
+    SupportAllowable,
 };
 pub use signal::{
     AccelerationPoint, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource,

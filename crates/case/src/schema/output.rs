@@ -3,7 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_quantities::{Coordinate, Duration, Energy, Force, Frequency, Vector};
+use carom_quantities::{Coordinate, Duration, Energy, Force, Frequency, Length, Modulus, Vector};
+
+use super::named::Named;
 
 /// A history at every step: of the mean motion of a group, or of the motion and the stress at a place.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -114,15 +116,70 @@ pub struct Level {
     pub allowable: Option<Allowable>,
 }
 
-/// What a contact may bear in one impact.
+/// What a contact may bear: force and energy in one impact, stroke and crush over the run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-#[schemars(extend("anyOf" = [{ "required": ["force"] }, { "required": ["energy"] }]))]
+#[schemars(extend("anyOf" = [
+    { "required": ["force"] },
+    { "required": ["energy"] },
+    { "required": ["stroke"] },
+    { "required": ["crush"] },
+]))]
 pub struct Allowable {
     /// Largest force.
     pub force: Option<Force>,
     /// Largest energy that it takes up, of contacts whose law takes up any.
     pub energy: Option<Energy>,
+    /// Largest penetration, of a stop its stroke.
+    pub stroke: Option<Length>,
+    /// Largest crush of a stop that stays.
+    pub crush: Option<Length>,
+}
+
+/// What parts of the model may bear over the run. The results have the margins, and the report the least of them; nothing else changes.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Allowables {
+    /// Bodies by their names.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub body: Named<BodyAllowable>,
+    /// Supports by their names.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub support: Named<SupportAllowable>,
+    /// Springs by their names.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub spring: Named<SpringAllowable>,
+}
+
+/// What a body may bear, at the instants that are kept for pictures: between them it may have borne more.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["stress"] }, { "required": ["plastic-strain"] }]))]
+pub struct BodyAllowable {
+    /// Largest von Mises stress of a cell.
+    pub stress: Option<Modulus>,
+    /// Largest equivalent plastic strain of a cell.
+    #[schemars(extend("exclusiveMinimum" = 0.0))]
+    pub plastic_strain: Option<f64>,
+}
+
+/// What a support may bear at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct SupportAllowable {
+    /// Largest force of all its nodes together.
+    pub force: Force,
+}
+
+/// What the springs of a name may bear at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[schemars(extend("anyOf" = [{ "required": ["force"] }, { "required": ["stroke"] }]))]
+pub struct SpringAllowable {
+    /// Largest sum of their forces.
+    pub force: Option<Force>,
+    /// Largest mean of their elongations.
+    pub stroke: Option<Length>,
 }
 
 /// What a probe writes.
@@ -163,6 +220,9 @@ pub struct Output {
     /// Checkpoints, from which `carom resume` goes on. One is always written at the end of a run. Default: one every 60 s of wall
     /// time, two kept.
     pub checkpoint: Option<Checkpoint>,
+    /// What bodies, supports and springs may bear; for contacts see `level`. Default: nothing is judged.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub allowable: Option<Allowables>,
 }
 
 /// When checkpoints are written while a run goes.

@@ -1,5 +1,7 @@
 //! What the check says of times, steps, normals, probes and contacts.
 
+use std::path::Path;
+
 use carom_case::{Built, Input, Problem, build, facts, parse};
 use carom_contact::Target;
 
@@ -69,6 +71,60 @@ fn the_first_impact_is_that_of_a_fall_with_gravity() {
     assert!(told.contains("nothing approaches"), "{told}");
     let told = fall(0.0, -1.0);
     assert!(told.contains("no impact before the end"), "{told}");
+}
+
+/// Two bars of 0.1638 litre of steel, 7844 kg/m³, meet at the start.
+#[test]
+fn size_mass_waves_and_what_meets_first_are_told_in_words() {
+    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
+    let input = Input::read(&cases.join("two-bars/case.toml"), &[]).unwrap();
+    let (case, locator) = parse(&input).unwrap();
+    let told = facts(&build(&case, &locator, &input).unwrap());
+    let fact = |name: &str| {
+        let found = told.iter().find(|fact| fact.name == name);
+        found.map_or("", |fact| &fact.value).to_owned()
+    };
+    assert_eq!(fact("size"), "508 mm");
+    assert!(
+        fact("mass").starts_with("2.570 kg in all"),
+        "{}",
+        fact("mass")
+    );
+    assert_eq!(fact("waves"), "5137 m/s");
+    assert_eq!(
+        fact("in a step"),
+        "a wave goes through 0.500 of the smallest elements"
+    );
+    let first = "`striker` and `target` (contact `shock`) at the start, which close with 5.14 m/s";
+    assert_eq!(fact("meets first"), first);
+    // a density in t/mm^3 with a stiffness in Pa
+    let told =
+        facts(&built(&mass(&body(-1.0)).replace("density = 1.0", "density = 1e-9")).unwrap());
+    let waves = told.iter().find(|fact| fact.name == "waves").unwrap();
+    assert!(waves.value.contains("are the units"), "{waves:?}");
+}
+
+#[test]
+fn the_largest_value_of_a_record_is_told_with_its_unit_and_its_steps() {
+    let shaken = format!(
+        "{}\nload.ground.base-acceleration.x = \"quake\"\n[signal.quake]\nacceleration.points = [{}]",
+        body(0.0),
+        r#"{ time = 0.0, acceleration = 0.0 }, { time = 0.1, acceleration = "-0.3 gn" }, { time = 0.2, acceleration = 0.0 }"#
+    );
+    let told = facts(&built(&mass(&shaken)).unwrap());
+    let record = told
+        .iter()
+        .find(|fact| fact.name == "signal quake")
+        .unwrap();
+    let expected = "acceleration, largest −2.94 m/s^2, −0.300 gn at 100 ms; 3 points every 100 ms from 0 s to 200 ms";
+    assert_eq!(record.value, expected);
+}
+
+#[test]
+fn an_acceleration_in_grams_is_met_with_the_standard_gravity() {
+    let heavy = format!("{}\nload.weight.acceleration = [\"1 g\"]", body(0.0));
+    let problems = built(&mass(&heavy)).unwrap_err();
+    assert_eq!(problems[0].nearest.as_deref(), Some("gn"), "{problems:?}");
 }
 
 #[test]

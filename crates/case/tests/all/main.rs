@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 mod across_zones;
+mod allowables;
 mod checks;
 mod compare;
 mod damaged;
@@ -12,6 +13,7 @@ mod events;
 mod forged;
 mod general;
 mod grades;
+mod interrupts;
 mod large;
 mod levels;
 mod losses;
@@ -30,11 +32,12 @@ mod reference;
 mod refine;
 mod repeat;
 mod resume;
+mod resume_cases;
 mod simulation;
 mod stage_one;
-mod symmetries;
 mod stages;
 mod stops;
+mod symmetries;
 mod verdict;
 mod warnings;
 mod zones;

@@ -137,6 +137,23 @@ fn the_nodes_of_a_constraint_are_retained() {
 }
 
 #[test]
+fn what_is_built_to_be_looked_at_saves_no_reduction() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("case.toml");
+    fs::write(&path, CASE).unwrap();
+    let look = || {
+        let input = Input::read(&path, &[]).unwrap();
+        let (case, locator) = carom_case::parse(&input).unwrap();
+        carom_case::build_to_look(&case, &locator, &input).unwrap()
+    };
+    let told_at_first = "made anew; a run saves it to 'rod.reduction'";
+    assert_eq!(told(&look()), told_at_first);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    built(folder.path(), &[]).unwrap();
+    assert_eq!(told(&look()), "read from 'rod.reduction'");
+}
+
+#[test]
 fn a_saved_reduction_of_something_else_is_made_anew() {
     for change in [
         "material.steel.density=7801.0",

@@ -13,16 +13,16 @@ use carom_output::checkpoint;
 
 use crate::compare::Nobody;
 
-fn cases() -> PathBuf {
+pub fn cases() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases")
 }
 
-fn words(texts: &[&str]) -> Vec<String> {
+pub fn words(texts: &[&str]) -> Vec<String> {
     texts.iter().map(|text| (*text).to_owned()).collect()
 }
 
 /// Stops a run after so many steps.
-fn after(steps: u64) -> impl Fn() -> bool {
+pub fn after(steps: u64) -> impl Fn() -> bool {
     let left = Cell::new(steps);
     move || match left.get() {
         0 => true,
@@ -34,7 +34,7 @@ fn after(steps: u64) -> impl Fn() -> bool {
 }
 
 /// Runs a case; returns whether it came to its end.
-fn run(input: &Input, folder: &Path, steps: u64) -> bool {
+pub fn run(input: &Input, folder: &Path, steps: u64) -> bool {
     let (case, locator) = parse(input).unwrap_or_else(|problems| panic!("{problems:?}"));
     let built = build(&case, &locator, input).unwrap_or_else(|problems| panic!("{problems:?}"));
     let parts = (input, &case, &built);
@@ -42,7 +42,7 @@ fn run(input: &Input, folder: &Path, steps: u64) -> bool {
     !finished.interrupted
 }
 
-fn open(folder: &Path, overrides: &[&str]) -> Resume {
+pub fn open(folder: &Path, overrides: &[&str]) -> Resume {
     match Resume::open(folder, &words(overrides)) {
         Ok(resume) => resume,
         Err(NotResumed::Folder(error)) => panic!("{error}"),
@@ -60,7 +60,7 @@ fn refused(folder: &Path, overrides: &[&str]) -> Vec<String> {
 }
 
 /// The files of a folder as they are compared: tables of work and times are left out, of checkpoints all but the state.
-fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+pub fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let list = fs::read_to_string(folder.join("files.txt")).unwrap();
     let names = list
         .lines()
@@ -89,8 +89,9 @@ fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     }
     files.insert("summary.json".to_owned(), summary.to_string().into_bytes());
     let report = String::from_utf8(files["report.html"].clone()).unwrap();
-    // the tables of the model's work and of the time spent stand before the text of the case
-    let work = report.find("Factorisations</").unwrap();
+    // the tables of the model's work and of the time spent stand before the text of the case; those of zones have work too
+    let work = report.find("Factorisations</");
+    let work = work.or_else(|| report.find("<h2 id=\"work\">")).unwrap();
     let case = report.find("<h2 id=\"case\">Case</h2>").unwrap();
     let report = format!("{}{}", &report[..work], &report[case..]);
     files.insert("report.html".to_owned(), report.into_bytes());

@@ -350,3 +350,63 @@ time = {{ end = "12 ms", step = "{step}", scheme.theta = {{}} }}
         |told: &String| told.contains("distance of the middles") && told.contains("1.0000e-3 s");
     assert!(found.iter().any(passes), "{found:?}");
 }
+
+/// Warnings of a case.
+fn told(text: &str) -> Vec<String> {
+    let input = Input::from_text("case.toml", text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    build(&case, &locator, &input).unwrap().warnings
+}
+
+/// 1 kg on 10^4 N/m vibrates with 62.83 ms.
+#[test]
+fn a_mass_on_a_spring_that_the_steps_do_not_follow_is_told() {
+    let text = |step: &str| {
+        format!(
+            r#"
+carom = 1
+mass.bob = {{ mass = 1.0, at = [1.0], initial.velocity = [1.0] }}
+spring.rod = {{ ends = ["bob", "ground"], axis = [1.0], stiffness = 1.0e4 }}
+time = {{ end = 10.0, step = "{step}", scheme.newmark = {{}} }}
+"#
+        )
+    };
+    assert!(told(&text("15 ms")).is_empty());
+    let warnings = told(&text("628 ms"));
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}");
+    };
+    for word in ["mass.bob", "62.8 ms", "at most 3.14 ms"] {
+        assert!(warning.contains(word), "{word}: {warning}");
+    }
+}
+
+/// A cube of 1 m and 1000 kg: 1000/6 kg m², and at most 750 kg m² with all of its mass in its corners.
+#[test]
+fn moments_of_inertia_that_no_body_has_are_told() {
+    let text = |inertia: &str| {
+        format!(
+            r#"
+carom = 1
+mesh.generate.cube.box = {{ origin = [0.0, 0.0, 0.0], size = [1.0, 1.0, 1.0], elements = [1, 1, 1] }}
+material.m = {{ density = 1000.0, elastic = {{ young = "1 GPa", poisson = 0.3 }} }}
+body.cube = {{ region = "cube", material = "m", rigid.inertia = {inertia}, initial.velocity = [0.0, 0.0, 1.0] }}
+time = {{ end = 1.0, step = "1 ms", scheme.theta = {{}} }}
+"#
+        )
+    };
+    let of_inertia = |inertia: &str| -> Vec<String> {
+        let warnings = told(&text(inertia)).into_iter();
+        warnings
+            .filter(|warning| warning.contains("inertia"))
+            .collect()
+    };
+    assert!(of_inertia("[100.0, 100.0, 200.0]").is_empty());
+    let impossible = of_inertia("[100.0, 100.0, 201.0]");
+    assert!(
+        impossible.len() == 1 && impossible[0].contains("the sum of the other two"),
+        "{impossible:?}"
+    );
+    let large = of_inertia("[751.0, 751.0, 751.0]");
+    assert!(large.len() == 1 && large[0].contains("750"), "{large:?}");
+}

@@ -1,4 +1,4 @@
-//! Every wrong case of `tests/bad-input` gives its expected message, exits 2 and leaves nothing but, from `carom check`, the
+//! Every wrong case of `tests/bad-input` gives its expected message, exits 2 and leaves nothing but, from `carom check --cells`, the
 //! files that the message names.
 //!
 //! A folder there holds `case.toml` (or not, where that is what is wrong), what it refers to, the message in `expected.txt`, and the
@@ -8,6 +8,9 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+/// The command that writes cells.
+const WRITES: &str = "check --cells";
 
 fn corpus() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/bad-input")
@@ -37,7 +40,7 @@ fn answer(command: &str, case: &Path, work: &Path) -> (String, Vec<String>) {
     let arguments = fs::read_to_string(case.join("arguments")).unwrap_or_default();
     let before = names(work);
     let output = Command::new(env!("CARGO_BIN_EXE_carom"))
-        .arg(command)
+        .args(command.split(' '))
         .arg("case.toml")
         .args(arguments.lines())
         .current_dir(work)
@@ -50,7 +53,7 @@ fn answer(command: &str, case: &Path, work: &Path) -> (String, Vec<String>) {
     let message = String::from_utf8_lossy(&output.stderr).into_owned();
     let pictures = work.join("case.check");
     for left in names(work).difference(&before) {
-        if command != "check" || *left != pictures {
+        if command != WRITES || *left != pictures {
             wrong.push(format!("left {}", left.display()));
         }
     }
@@ -58,9 +61,9 @@ fn answer(command: &str, case: &Path, work: &Path) -> (String, Vec<String>) {
     (message, wrong)
 }
 
-/// Files with cells that the message names and `carom check` did not write, or the other way round.
+/// Files with cells that the message names and `carom check --cells` did not write, or the other way round.
 fn not_as_named(message: &str, command: &str, pictures: &Path) -> Vec<String> {
-    let written = match command == "check" && pictures.is_dir() {
+    let written = match command == WRITES && pictures.is_dir() {
         true => names(pictures),
         false => BTreeSet::new(),
     };
@@ -68,7 +71,7 @@ fn not_as_named(message: &str, command: &str, pictures: &Path) -> Vec<String> {
         let name = word.strip_prefix("case.check/")?;
         Some(pictures.join(name))
     });
-    let named: BTreeSet<PathBuf> = named.filter(|_| command == "check").collect();
+    let named: BTreeSet<PathBuf> = named.filter(|_| command == WRITES).collect();
     let differ = written.symmetric_difference(&named);
     differ
         .map(|file| format!("named or written, not both: {}", file.display()))
@@ -84,7 +87,7 @@ fn every_wrong_case_gives_its_message_and_leaves_nothing() {
     for case in &cases {
         let name = case.file_name().unwrap().to_string_lossy();
         let expected = case.join("expected.txt");
-        for command in ["check", "run"] {
+        for command in [WRITES, "run"] {
             let folder = work.path().join(command).join(name.as_ref());
             let (message, answers) = answer(command, case, &folder);
             wrong.extend(
@@ -92,7 +95,7 @@ fn every_wrong_case_gives_its_message_and_leaves_nothing() {
                     .iter()
                     .map(|answer| format!("{command} {name}: {answer}")),
             );
-            if bless && command == "check" && answers.is_empty() {
+            if bless && command == WRITES && answers.is_empty() {
                 fs::write(&expected, &message).unwrap();
             }
             if fs::read_to_string(&expected).ok().as_ref() != Some(&message) {

@@ -72,8 +72,30 @@ fn a_check_tells_poor_cells_thin_walls_and_nodes_that_are_not_merged() {
         "{}",
         fact("nodes of a")
     );
+    // nothing is written but where it is asked for
+    assert_eq!(fs::read_dir(work.path()).unwrap().count(), 2);
+    let output = carom(work.path(), &["check", "case.toml", "--cells"]);
+    assert!(text(&output).contains("case.check/poor-cells.vtu"));
     let written = work.path().join("case.check/poor-cells.vtu");
     assert!(fs::read(written).unwrap().starts_with(b"<?xml"));
+}
+
+#[test]
+fn json_with_letters_that_turn_the_writing_is_json() {
+    let work = tempfile::tempdir().unwrap();
+    plate(work.path());
+    let file = work.path().join("case.toml");
+    let case = fs::read_to_string(&file).unwrap();
+    fs::write(
+        &file,
+        case.replace("carom = 1", "carom = 1\ntitle = \"a\\u202e b\\u009bc\""),
+    )
+    .unwrap();
+    let output = carom(work.path(), &["run", "case.toml", "--json"]);
+    let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["title"], "a\u{202e} b\u{9b}c");
+    let printed = String::from_utf8(output.stdout).unwrap();
+    assert!(!printed.contains(['\u{202e}', '\u{9b}']));
 }
 
 #[test]

@@ -85,6 +85,36 @@ fn every_template_passes_the_check_and_no_file_is_overwritten() {
     );
 }
 
+/// Runs templates, and asks for the verdict `good`.
+fn end_good(names: &[&str]) {
+    for name in names {
+        let work = tempfile::tempdir().unwrap();
+        assert_eq!(carom(work.path(), &["new", name]).status.code(), Some(0));
+        let output = carom(work.path(), &["run", "case.toml", "--json"]);
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let verdict = &summary["verdict"];
+        assert_eq!(verdict["grade"], "good", "{name}: {verdict:#}");
+    }
+}
+
+/// All but the box of shells, `drop-test`, whose steps are too many for a quick test.
+#[test]
+fn templates_end_good() {
+    end_good(&[
+        "two-bars",
+        "two-bars-newmark",
+        "bar-on-wall",
+        "friction",
+        "rigid-hammer",
+    ]);
+    end_good(&["preload", "arlequin"]);
+}
+
+#[test]
+fn templates_of_a_block_and_of_buildings_end_good() {
+    end_good(&["block-drop", "seismic-stops"]);
+}
+
 #[test]
 fn a_template_with_a_mesh_brings_it_along_and_writes_all_its_files_or_none() {
     let work = tempfile::tempdir().unwrap();

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use crate::commands::{carom, text};
 use crate::streams::BAR;
@@ -58,6 +59,37 @@ fn a_case_file_beyond_its_bound_is_named() {
 }
 
 /// A case file that is not there: the one that was meant is told where there is one with nearly this name, in the folder or in one with nearly its name.
+/// A block of eighty million nodes where the process may have 4 GB.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_mesh_without_memory_is_refused_before_it_is_made() {
+    let work = tempfile::tempdir().unwrap();
+    let case = r#"
+carom = 1
+mesh.generate.s.box = { origin = [0.0, 0.0, 0.0], size = [1.0, 1.0, 1.0], elements = [400, 400, 500] }
+material.m = { density = 1000.0, elastic = { young = "1 GPa", poisson = 0.3 } }
+body.s = { region = "s", material = "m" }
+time = { end = "1 ms", step = "0.1 ms", scheme.newmark = {} }
+"#;
+    fs::write(work.path().join("case.toml"), case).unwrap();
+    let program = env!("CARGO_BIN_EXE_carom");
+    for command in ["check", "run"] {
+        let script = format!("ulimit -v 4000000; exec '{program}' {command} case.toml");
+        let output = Command::new("bash")
+            .args(["-c", &script])
+            .current_dir(work.path())
+            .output()
+            .unwrap();
+        assert_eq!(output.status.code(), Some(3), "{}", text(&output));
+        assert!(
+            text(&output).contains("out of memory: a mesh of 8.1e7 nodes needs"),
+            "{}",
+            text(&output)
+        );
+        assert_eq!(fs::read_dir(work.path()).unwrap().count(), 1);
+    }
+}
+
 #[test]
 fn a_case_file_that_is_missing_is_met_with_the_one_that_was_meant() {
     let work = tempfile::tempdir().unwrap();

@@ -73,6 +73,7 @@ impl Driver {
             },
             factors: [map.gap.x, map.rate.x, self.sliding().0(map).x],
             tolerance: system.nonlinear.iteration.tolerance,
+            interrupt: &self.interrupt,
         };
         match &mut apart.spans[..] {
             [one] => one.solve(&of),

@@ -10,6 +10,11 @@ impl Driver {
     /// Computes the next state from the state, a step of `dt` further, of an explicit scheme before one of the size `next`
     /// (both s).
     pub(super) fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error> {
+        let outcome = self.attempt_to_the_end(dt, next);
+        self.unless_interrupted(outcome)
+    }
+
+    fn attempt_to_the_end(&mut self, dt: f64, next: f64) -> Result<(), Error> {
         (self.failed, self.failed_friction) = (None, None);
         self.effective.return_to_iterations();
         self.renew_targets();

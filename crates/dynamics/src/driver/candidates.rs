@@ -195,6 +195,8 @@ impl Driver {
         let rows = &self.pairing.rows;
         let points = (&self.candidates[..], 1, together);
         if !self.refined.holds_columns {
+            let room = compliance.has_room(points, rows, &system.fixed, operators);
+            room.map_err(|cause| Error::no_room(&self.state, cause))?;
             compliance.update(points, rows, &system.fixed, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
@@ -300,7 +302,9 @@ impl Driver {
         for (group, range) in compliance.groups().ranges().enumerate() {
             let places = &compliance.groups().order()[range];
             if self.interfaces.len() == group {
-                self.interfaces.push(Interface::default());
+                let mut solver = Interface::default();
+                solver.interrupt.clone_from(&self.interrupt);
+                self.interfaces.push(solver);
             }
             let (solver, all) = (&mut self.interfaces[group], &mut self.interface);
             let of_place = |&place: &u32| self.candidate_data[place as usize];
@@ -415,6 +419,7 @@ impl Driver {
                     point,
                 }
             }
+            Failure::Interrupted { .. } => Error::Interrupted,
         }
     }
 }

@@ -58,7 +58,10 @@ impl Driver {
         let begin = Instant::now();
         let points = (&self.candidates[..], width, together);
         if !self.refined.holds_columns {
-            compliance.update(points, &self.stacked, &system.fixed, operators);
+            let of = (&self.stacked, &system.fixed[..]);
+            let room = compliance.has_room(points, of.0, of.1, operators);
+            room.map_err(|cause| Error::no_room(&self.state, cause))?;
+            compliance.update(points, of.0, of.1, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
         self.describe_candidates(Some(tangents as u32));

@@ -80,8 +80,8 @@ impl Driver {
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
         if self.prepared {
-            self.take_stages()?;
-            self.check_finite()?;
+            let outcome = self.take_stages().and_then(|()| self.check_finite());
+            self.unless_interrupted(outcome)?;
         } else {
             self.attempt(self.dt, self.ahead)?;
         }

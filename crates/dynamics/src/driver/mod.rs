@@ -81,6 +81,7 @@ mod weak;
 use std::cell::RefCell;
 use std::sync::Arc;
 
+use carom_algebra::Interrupt;
 use carom_algebra::solver::Saddle;
 use carom_bodies::{Scratch, Stored};
 use carom_contact::law::{Displacement, Level};
@@ -88,6 +89,7 @@ use carom_contact::{Contact, Law, Pairing, Search};
 
 use crate::costs::{Costs, Phases};
 use crate::coulomb::{Coulomb, FrictionProblem, Slip};
+use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::of_contact::OfContact;
 use crate::report::StepReport;
@@ -181,6 +183,8 @@ pub struct Driver {
     /// Gaps of the candidates at the end of the step without any contact force, m; of an adaptive step.
     free_gaps: Vec<f64>,
     coulomb: Coulomb,
+    /// Ends the attempt under way where it is set.
+    interrupt: Interrupt,
     weak: WeakForms,
     with_weak: WithWeak,
     /// Normal and tangential rows of all points, point after point, where there is friction; of steps with iterations.
@@ -269,6 +273,27 @@ impl Driver {
     /// Counts what the run cost before this driver went on with it.
     pub fn add_earlier(&mut self, costs: &Costs) {
         self.earlier.add(costs);
+    }
+
+    /// Ends a step early where this is set; it then fails with [`Error::Interrupted`]. Not on ranks, which all
+    /// take the same steps: they end between two steps.
+    pub fn heed(&mut self, interrupt: &Interrupt) {
+        if self.several {
+            return;
+        }
+        self.interrupt = interrupt.clone();
+        self.coulomb.interrupt = interrupt.clone();
+        for interface in std::iter::once(&mut self.interface).chain(&mut self.interfaces) {
+            interface.interrupt = interrupt.clone();
+        }
+    }
+
+    /// What an attempt has come to: nothing, where somebody has asked for its end meanwhile. Part of what loops found may be missing then.
+    fn unless_interrupted(&self, outcome: Result<(), Error>) -> Result<(), Error> {
+        match self.interrupt.is_set() {
+            true => Err(Error::Interrupted),
+            false => outcome,
+        }
     }
 
     /// Whether pieces float in the attempt under way.

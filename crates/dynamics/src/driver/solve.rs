@@ -88,6 +88,9 @@ impl Driver {
         let mut standing = self.standing();
         let mut pass = 0;
         while pass < limit {
+            if self.interrupt.is_set() {
+                return Err(Error::Interrupted);
+            }
             let jumps = self.jumps();
             let before = self.residuals.last().copied();
             self.residuals.push(standing.imbalance);

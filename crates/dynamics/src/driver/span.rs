@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use carom_algebra::Interrupt;
 use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
@@ -23,6 +24,8 @@ pub(super) struct Candidates<'a> {
     pub(super) factors: [f64; 3],
     /// Relative defect that solutions with friction may have.
     pub(super) tolerance: f64,
+    /// Ends all of them.
+    pub(super) interrupt: &'a Interrupt,
 }
 
 impl Candidates<'_> {
@@ -77,6 +80,8 @@ impl Span {
         self.found.clear();
         self.circled.clear();
         self.passes = 0;
+        self.interface.interrupt.clone_from(of.interrupt);
+        self.coulomb.interrupt.clone_from(of.interrupt);
         let groups = std::mem::take(&mut self.groups);
         let solved = groups
             .iter()

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 use std::sync::Arc;
 
+use carom_algebra::Interrupt;
 use carom_bodies::{Scratch, Stored};
 use carom_contact::{Contact, Pairing, Search};
 
@@ -117,6 +118,7 @@ impl Driver {
             candidate_data: Vec::new(),
             free_gaps: Vec::new(),
             coulomb: Coulomb::default(),
+            interrupt: Interrupt::default(),
             weak: WeakForms::new(&system)?,
             with_weak: WithWeak::default(),
             stacked: carom_contact::Rows::default(),
@@ -495,7 +497,7 @@ impl Driver {
     }
 
     /// Lets go of the bodies that have waited for the dynamics.
-    fn release(&mut self) {
+    fn let_go(&mut self) {
         if let Some(released) = self.released.take() {
             self.system = released;
             self.effective.forget();
@@ -508,7 +510,7 @@ impl Driver {
             return Ok(());
         };
         if self.state.step >= preload.steps {
-            self.release();
+            self.let_go();
         }
         let system = Arc::clone(&self.system);
         if self.state.step != preload.steps || self.state.motion.v.iter().any(|v| *v != 0.0) {

@@ -3,6 +3,8 @@
 //! An adaptive step is cut where a contact closes, and halved where energy grows or no solution is found. A step of fixed
 //! size that finds no solution is taken in halves of halves.
 
+use carom_algebra::Interrupt;
+
 use super::Driver;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
@@ -91,7 +93,7 @@ impl Driver {
                         level -= 1;
                     }
                 }
-                Err(error) if level < most => {
+                Err(error) if level < most && !error.is_of_any_step() => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
                     indefinite |= is_indefinite(&error);
                     if matches!(error, Error::Unheld { .. }) {
@@ -104,6 +106,9 @@ impl Driver {
                     if let Some(start) = start {
                         self.state = start;
                         self.leave_direct();
+                    }
+                    if error.is_of_any_step() {
+                        return Err(error);
                     }
                     indefinite |= is_indefinite(&error);
                     let error = unheld.unwrap_or(error);
@@ -269,5 +274,9 @@ impl Stepper for Driver {
 
     fn bring(&mut self, scope: Scope) {
         self.bring_on_ranks(scope);
+    }
+
+    fn heed(&mut self, interrupt: &Interrupt) {
+        self.heed(interrupt);
     }
 }

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use carom_mesh::{Mesh, read};
 
 use carom_testing::damage::damaged;
@@ -88,6 +90,27 @@ fn what_is_cut_off_damaged_or_of_another_sort_is_told() {
         let error = parse(&text).map(|_| ()).unwrap_err().to_string();
         assert!(error.contains(told), "{told}: {error}");
     }
+}
+
+/// Two points whose compressed coordinates say that they have 2 GiB: nothing of them is expanded.
+#[test]
+fn a_compressed_array_that_is_longer_than_its_points_is_refused_by_its_head() {
+    let words: [u64; 4] = [1, 1 << 31, 0, 11];
+    let head: Vec<u8> = words.into_iter().flat_map(u64::to_le_bytes).collect();
+    // a block of 2 GiB of zeros would have two million bytes; the first of them
+    let block = [
+        0x78, 0xda, 0xed, 0xc1, 0x01, 0x01, 0x00, 0x00, 0x00, 0x80, 0x90,
+    ];
+    let data = STANDARD.encode(head) + &STANDARD.encode(block);
+    let text = format!(
+        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">
+<UnstructuredGrid><Piece NumberOfPoints="2" NumberOfCells="1"><Points>
+<DataArray type="Float64" NumberOfComponents="3" format="binary">{data}</DataArray>
+</Points></Piece></UnstructuredGrid></VTKFile>"#
+    );
+    let error = read::vtu::parse(Path::new("a.vtu"), text.as_bytes()).unwrap_err();
+    let told = "a compressed array of 2147483648 bytes in place of 48 at most";
+    assert!(error.to_string().contains(told), "{error}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! The solver: Newton passes, and sweeps where they bring nothing.
 
+use carom_algebra::Interrupt;
 use carom_laws::Status;
 
 use super::anderson::Anderson;
@@ -82,6 +83,8 @@ pub struct Coulomb {
     pub(super) reversals: Vec<u32>,
     /// What sweeps keep: D p, or Bᵀ p of a lumped mass.
     kept: Vec<f64>,
+    /// Ends passes and sweeps without a solution where it is set.
+    pub interrupt: Interrupt,
     /// Why iterations have failed, where D is not known.
     pub cause: Option<carom_algebra::Error>,
     pub(super) rows: Rows,
@@ -155,6 +158,9 @@ impl Coulomb {
             }
             self.kept.clone_from(&self.trial.product);
             for _ in 0..SWEEPS << round {
+                if self.interrupt.is_set() {
+                    return Err(self.failure());
+                }
                 sweep::sweep((problem, d), &mut self.trial, &mut self.kept);
             }
             self.sweeps += SWEEPS << round;
@@ -185,6 +191,9 @@ impl Coulomb {
         let alone = problem.len() == 1;
         self.anderson.begin(&self.trial.p);
         for _ in 0..most {
+            if self.interrupt.is_set() {
+                return Err(self.failure());
+            }
             self.sweeps += 1;
             let room = (&mut self.trial, &mut self.kept);
             if sweep::sweep((problem, d), room.0, room.1) > settled && !alone {
@@ -235,7 +244,7 @@ impl Coulomb {
         };
         let mut patience = most;
         for _ in 0..PASSES {
-            if patience == 0 {
+            if patience == 0 || self.interrupt.is_set() {
                 break;
             }
             if self.best.merit.is_finite() && self.trial.worst.0 <= TOLERANCE {
@@ -348,6 +357,18 @@ mod tests {
             factors: [0.0, 1.0, 1.0],
             tolerance: 1e-10,
         }
+    }
+
+    #[test]
+    fn an_interrupt_ends_the_search_before_the_next_pass() {
+        let problem = node([0.75, -1.0]);
+        let mut coulomb = Coulomb::default();
+        coulomb.solve(&problem.posed()).unwrap();
+        coulomb.interrupt.set();
+        let failure = coulomb.solve(&problem.posed()).unwrap_err();
+        assert_eq!((failure.passes, failure.sweeps), (0, 0));
+        // it names a candidate of this problem
+        assert_eq!(failure.candidate, 0);
     }
 
     #[test]

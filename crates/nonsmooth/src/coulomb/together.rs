@@ -59,7 +59,7 @@ impl Coulomb {
         rows: &mut Rows,
     ) -> Result<bool, Error> {
         let (mut tolerance, mut pace) = (ROUGH, Pace::default());
-        while self.passes < PASSES {
+        while self.passes < PASSES && !self.interrupt.is_set() {
             self.passes += 1;
             self.start.copy_from(&self.trial);
             rows.pose((problem, pace.share), &self.trial, saddle);

@@ -68,6 +68,8 @@ impl Trial {
     /// The trial of no force, with the statuses at the end of the last step.
     pub(super) fn start(&mut self, problem: &Posed) {
         let (n, rows) = (problem.len(), problem.rows());
+        // nothing is measured yet, and the worst candidate of another problem may be none of this one
+        self.worst = (f64::INFINITY, 0);
         for values in [&mut self.p, &mut self.product, &mut self.defects] {
             values.clear();
             values.resize(rows, 0.0);

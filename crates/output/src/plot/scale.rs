@@ -138,7 +138,8 @@ pub fn quantity(value: f64, unit: &str) -> String {
 /// As [`quantity`], with this many significant digits.
 pub fn rounded(value: f64, unit: &str, figures: i32) -> String {
     if value == 0.0 || !value.is_finite() {
-        return format!("{value} {unit}").trim_end().to_owned();
+        // a zero has no sign
+        return format!("{} {unit}", value + 0.0).trim_end().to_owned();
     }
     let (factor, prefixed) = engineering(unit, value.abs());
     let plain = unit.is_empty() && (1e-3..1e6).contains(&value.abs());
@@ -229,6 +230,12 @@ mod tests {
         quantity: "contact force",
         unit: "N",
     };
+
+    #[test]
+    fn a_zero_has_no_sign() {
+        assert_eq!(quantity(-0.0, "N"), "0 N");
+        assert_eq!(quantity(0.0, ""), "0");
+    }
 
     #[test]
     fn prefixes_bring_the_largest_value_between_one_and_a_thousand() {

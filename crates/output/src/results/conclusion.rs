@@ -14,7 +14,7 @@ use crate::results::page::tiles::tiles;
 use crate::results::page::{self, Sources};
 use crate::results::reduced;
 use crate::results::totals::Last;
-use crate::results::{Comparison, Ending, Results, contacts, largest};
+use crate::results::{Comparison, Ending, Results, allowables, contacts, largest};
 use crate::summary::{
     Angular, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Zones, hash,
 };
@@ -163,6 +163,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         discrete: results.discrete.all(),
         loads: results.loads.all(system),
         maxima: largest::maxima(results),
+        allowables: allowables::checks(results, &largest::stills(results)),
         energy,
         momentum,
         exact,

@@ -7,7 +7,7 @@ use carom_dynamics::{ContactRecord, Impact, NoRestitution};
 
 use crate::results::impacts::ContactTotals;
 use crate::results::{LevelSettings, Results};
-use crate::statistics::{Level, Statistics, takes_energy};
+use crate::statistics::{Depth, Level, Statistics, takes_energy};
 use crate::summary::{Contact, Friction};
 
 /// Each contact by its name.
@@ -118,9 +118,20 @@ pub(crate) fn levels(results: &Results) -> BTreeMap<String, Level> {
         let loss = losses
             .map(ContactRecord::friction_loss)
             .fold(0.0, |a, b| a + b);
+        let depths = level.contacts.iter().filter_map(|&k| {
+            let record = records.get(k)?;
+            Some(Depth {
+                contact: k,
+                stroke: record.penetration,
+                crush: results.last.crushes.get(k).copied().unwrap_or(0.0),
+                time: record.peak_time,
+            })
+        });
+        let depths: Vec<Depth> = depths.collect();
+        let of_both = (&impacts[..], &depths[..]);
         let takes = |contact: usize| takes_energy(&results.system, contact);
         let allowed = (loss, level.allowable);
-        let of = Level::of(&level.contacts, &impacts, name, allowed, takes);
+        let of = Level::of(&level.contacts, of_both, name, allowed, takes);
         (level.name.clone(), of)
     };
     results.settings.levels.iter().map(one).collect()

@@ -2,6 +2,7 @@
 //!
 //! A state is kept whenever a force is larger than all before, so memory is one displacement for each level.
 
+use carom_contact::Point;
 use carom_dynamics::{Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
@@ -69,16 +70,12 @@ impl Instants {
         let mut nodes = outlines.nodes();
         if !outlines.has_patches() {
             nodes.extend(lines.iter().flatten());
-            // marks of points that no line has
-            nodes.extend(
-                system
-                    .contacts
-                    .iter()
-                    .flat_map(|contact| contact.points.iter().map(|point| point.node())),
-            );
-            nodes.sort_unstable();
-            nodes.dedup();
         }
+        // a mark may be where nothing is drawn: at a mass
+        let points = system.contacts.iter().flat_map(|contact| &contact.points);
+        nodes.extend(points.map(Point::node));
+        nodes.sort_unstable();
+        nodes.dedup();
         let drawn = outlines.has_patches() || (1..=LINES).contains(&lines.len());
         let of_level = |level: &LevelSettings| Instant::new(Some(&level.name), &level.contacts);
         let all: Vec<usize> = (0..system.contacts.len()).collect();

@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Pieces, Results, columns, discrete, exact, fields, figures, histories, impacts, instants,
-    loads, page, stills, totals,
+    Pieces, Results, allowables, columns, discrete, exact, fields, figures, histories, impacts,
+    instants, loads, page, stills, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::{Settings, Tables};
@@ -22,14 +22,14 @@ struct Gathered(Files, Beside);
 /// Bytes of the list of files, histories, impacts, fields.
 type Files = (u64, histories::Kept, impacts::Kept, Option<fields::Sent>);
 
-/// Figures, kept instants, instants of largest forces, springs and dashpots, loads, spectra, filtered accelerations, series and statuses
+/// Figures, kept instants, instants of largest forces, springs and dashpots with supports, loads, spectra, filtered accelerations, series and statuses
 /// of the page, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Beside(
     figures::Traces,
     stills::Kept,
     Vec<instants::Instant>,
-    discrete::DiscretePeaks,
+    (discrete::DiscretePeaks, allowables::SupportPeaks),
     Vec<loads::LoadTotals>,
     Vec<Vec<Vec<[f64; 2]>>>,
     (Vec<f64>, Vec<Vec<f64>>),
@@ -122,7 +122,7 @@ impl Results {
             traces,
             kept,
             instants,
-            _,
+            (_, supports),
             loads,
             spectra,
             filtered,
@@ -135,6 +135,7 @@ impl Results {
         self.curves.takes(traces)
             && self.stills.takes(&self.system, kept)
             && self.instants.takes(&self.system, instants)
+            && supports.is_of(self.system.supports.len())
             && [0, self.system.nonlinear.load_names.len()].contains(&loads.len())
             && self.spectra.takes(spectra)
             && self.filtered.takes(filtered)
@@ -153,7 +154,7 @@ impl Results {
             traces,
             kept,
             instants,
-            discrete,
+            (discrete, supports),
             loads,
             spectra,
             filtered,
@@ -167,6 +168,7 @@ impl Results {
         self.stills.go_on(kept);
         self.instants.go_on(instants);
         self.discrete = discrete;
+        self.supports = supports;
         self.loads.totals = loads;
         self.spectra.go_on(spectra);
         self.filtered.go_on(filtered);
@@ -210,7 +212,7 @@ impl Results {
             self.curves.kept(),
             self.stills.settled(&self.system),
             self.instants.kept(),
-            &self.discrete,
+            (&self.discrete, &self.supports),
             &self.loads.totals,
             self.spectra.kept(),
             self.filtered.kept(),

@@ -10,8 +10,7 @@ use crate::results::stills::{Largest, Still};
 
 /// Those of a run that has ended.
 pub(crate) fn maxima(results: &Results) -> Maxima {
-    let instants = model::instants(results);
-    let stills: Vec<&Still> = instants.iter().map(|(still, _)| *still).collect();
+    let stills = stills(results);
     Maxima {
         instants: stills.len(),
         von_mises: of_cells(results, &stills, 0),
@@ -19,6 +18,12 @@ pub(crate) fn maxima(results: &Results) -> Maxima {
         plastic_strain: of_cells(results, &stills, 1),
         displacement: of_nodes(results, &stills),
     }
+}
+
+/// The kept instants.
+pub(crate) fn stills(results: &Results) -> Vec<&Still> {
+    let instants = model::instants(results);
+    instants.iter().map(|(still, _)| *still).collect()
 }
 
 /// The largest of the values at cells: stress, plastic strain or strain.

@@ -7,6 +7,7 @@
 //!
 //! What a run writes is complete whenever it is cut: tables grow by whole rows, all other files appear by one rename.
 
+mod allowables;
 mod beams;
 mod cells;
 mod columns;
@@ -51,6 +52,7 @@ use std::time::{Duration, Instant};
 use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System, Watched};
 
 use crate::{Error, Folder, atomic, checkpoint};
+use allowables::SupportPeaks;
 use discrete::DiscretePeaks;
 use due::Due;
 use exact::Comparison;
@@ -71,7 +73,8 @@ pub use page::tiles::Tile;
 pub use pieces::Piece;
 pub use rank_pieces::Pieces;
 pub use settings::{
-    Checkpoints, Ending, Fields, LevelSettings, Probe, Reference, Settings, Spectrum,
+    AllowableSettings, Bearer, Checkpoints, Ending, Fields, LevelSettings, Probe, Reference,
+    Settings, Spectrum,
 };
 use spectra::Spectra;
 use stills::Stills;
@@ -96,6 +99,7 @@ pub struct Results {
     raster: RasterOf,
     instants: Instants,
     discrete: DiscretePeaks,
+    supports: SupportPeaks,
     loads: Loads,
     spectra: Spectra,
     filtered: Filtered,
@@ -197,6 +201,7 @@ impl Results {
             raster: RasterOf::new(&system, settings.end),
             instants: Instants::new(&system, &settings.levels),
             discrete: DiscretePeaks::default(),
+            supports: SupportPeaks::default(),
             loads: Loads::default(),
             spectra,
             filtered,
@@ -241,6 +246,7 @@ impl Results {
             self.instants.push(&self.system, state, report);
         }
         self.discrete.push(&self.system, state);
+        self.supports.push(report);
         self.spectra.push(&self.system, state, report);
         self.filtered.push(&self.system, state, report);
         if let (Some(comparison), Some(point)) = (&mut self.comparison, point) {
@@ -270,6 +276,14 @@ impl Results {
             let points = self.system.first_point[k]..self.system.first_point[k + 1];
             state.interface.force[points].iter().any(|f| *f != 0.0)
         };
+        let crush = |k: usize| {
+            let points = self.system.first_point[k]..self.system.first_point[k + 1];
+            let law = &self.system.contacts[k].law;
+            let own = state.interface.crush[points]
+                .iter()
+                .map(|deepest| law.stays(*deepest));
+            own.fold(0.0, f64::max)
+        };
         self.last = Last {
             step: state.step,
             time: state.time,
@@ -284,6 +298,7 @@ impl Results {
             unjoined: meetings::unjoined(&self.system, &state.motion),
             velocities: velocities(&self.system, &state.motion.v),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
+            crushes: (0..self.system.contacts.len()).map(crush).collect(),
         };
         self.stills.finish(&self.system, state);
         let outcomes = [

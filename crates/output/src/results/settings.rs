@@ -36,6 +36,8 @@ pub struct Settings {
     pub contact_filters: BTreeMap<String, Vec<u32>>,
     /// Contacts that are judged together.
     pub levels: Vec<LevelSettings>,
+    /// What bodies, supports and springs may bear.
+    pub allowables: Vec<AllowableSettings>,
     /// Time between two rows of `histories.csv`, s; `None`: a row for every step.
     pub history_every: Option<f64>,
     /// Whether `histories.csv` and `contact.csv` are compressed, with `.gz` after their names.
@@ -79,6 +81,30 @@ pub struct LevelSettings {
     pub contacts: Vec<usize>,
     /// What each of them may bear.
     pub allowable: Allowable,
+}
+
+/// What something may bear over the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AllowableSettings {
+    /// What bears it.
+    pub of: Bearer,
+    /// In SI units.
+    pub allowable: f64,
+}
+
+/// What bears something.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Bearer {
+    /// Von Mises stress of a body, by its index.
+    Stress(usize),
+    /// Plastic strain of a body.
+    PlasticStrain(usize),
+    /// Force of a named support, by its index.
+    Support(usize),
+    /// Force of the springs of a name.
+    SpringForce(String),
+    /// Elongation of the springs of a name.
+    SpringStroke(String),
 }
 
 /// A history of the mean motion of a group of nodes.

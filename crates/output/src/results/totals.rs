@@ -35,6 +35,8 @@ pub(crate) struct Last {
     pub(crate) velocities: Vec<[f64; 3]>,
     /// Whether each contact has a force.
     pub(crate) closed: Vec<bool>,
+    /// Largest crush of a point of each contact that stays, m.
+    pub(crate) crushes: Vec<f64>,
 }
 
 /// Part of the largest energy in the frame of the model below which rounding hides an energy: the balance is kept to 1e-9 of

@@ -12,7 +12,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::maxima::Maxima;
-use crate::statistics::Level;
+use crate::statistics::{Check, Level};
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
@@ -52,6 +52,9 @@ pub struct Summary {
     /// Largest values of the fields.
     #[serde(default)]
     pub maxima: Maxima,
+    /// What bodies, supports and springs had to bear, where the case says what they may.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowables: Vec<Check>,
     /// Balance of energy.
     pub energy: Energy,
     /// Balance of linear momentum.
@@ -306,6 +309,17 @@ pub struct Angular {
     /// the size of the linear momentum times the largest distance of a node from the origin if that is larger.
     #[serde(with = "float")]
     pub relative_residual: f64,
+}
+
+impl Angular {
+    /// The largest component at the start, at the end and of an impulse.
+    pub(crate) fn largest(&self) -> f64 {
+        let rows = [&self.initial, &self.r#final]
+            .into_iter()
+            .chain(self.impulses.values());
+        rows.flatten()
+            .fold(0.0, |most, part| f64::max(most, part.abs()))
+    }
 }
 
 /// Distance of one contact from its exact solution. Relative errors are `null` where there is nothing to be relative to.

@@ -149,6 +149,7 @@ pub fn settings(folder: &Path) -> Settings {
         probes: Vec::new(),
         contact_filters: Default::default(),
         levels: Vec::new(),
+        allowables: Vec::new(),
         history_every: None,
         compress_histories: false,
         fields: None,

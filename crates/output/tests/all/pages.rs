@@ -53,6 +53,7 @@ fn sample(verdict: Verdict) -> Summary {
         loads: BTreeMap::new(),
         discrete: BTreeMap::new(),
         maxima: Default::default(),
+        allowables: Vec::new(),
         energy,
         momentum: Momentum {
             initial: [6.6, 0.0, 0.0],
@@ -69,6 +70,67 @@ fn sample(verdict: Verdict) -> Summary {
         timings: BTreeMap::from([("solve".to_owned(), 0.1234)]),
         warnings: vec!["the step is long".to_owned()],
         outputs: vec!["summary.json".to_owned()],
+    }
+}
+
+/// The page of a summary without a program.
+fn page(summary: &Summary) -> String {
+    let report = Report {
+        summary,
+        impacts: &[],
+        figures: &[],
+        case: "",
+        tiles: &[],
+        quality: &[],
+        data: None,
+    };
+    report.html().unwrap()
+}
+
+#[test]
+fn what_rounding_leaves_of_a_zero_is_0_in_the_tables_but_for_residuals() {
+    let mut summary = sample(verdict(0.0));
+    summary.momentum = Momentum {
+        initial: [6.6, -0.0, 3e-17],
+        r#final: [6.6, -4e-16, 0.0],
+        residual: [0.0, -4e-16, 0.0],
+        size: 6.6,
+        ..Momentum::default()
+    };
+    let page = page(&summary);
+    let row = |label: &str| {
+        let begin = page
+            .find(&format!("<th scope=\"row\">{label}</th><td>6.6"))
+            .unwrap();
+        let end = page[begin..].find("</tr>").unwrap();
+        page[begin..begin + end].to_owned()
+    };
+    for label in ["Start", "End"] {
+        assert!(
+            row(label).ends_with("<td>0</td><td>0</td>"),
+            "{}",
+            row(label)
+        );
+    }
+    assert!(
+        page.contains("<td>−4.000·10⁻¹⁶</td>"),
+        "the residual shows rounding"
+    );
+}
+
+#[test]
+fn a_page_has_landmarks_with_names() {
+    let page = page(&sample(verdict(0.0)));
+    let [main, end] = ["<main>", "</main>"].map(|tag| page.find(tag).unwrap());
+    assert!(
+        main < page.find("class=\"tiles\"").unwrap() && page.find("id=\"case\"").unwrap() < end
+    );
+    for named in [
+        "<nav aria-label=",
+        "class=\"tiles\" aria-label=",
+        "<section id=\"verdict\"",
+    ] {
+        assert!(page.contains(named), "{named}");
     }
 }
 

@@ -66,18 +66,27 @@ fn number_type(name: &str) -> Option<(usize, bool, bool)> {
     })
 }
 
-/// The numbers of an array; `appended`: the bytes after the underscore of the appended data.
-pub(super) fn numbers(header: &Header, array: &Array, appended: &[u8]) -> Result<Numbers, Fault> {
+/// The numbers of an array, `most` at most; `appended`: the bytes after the underscore of the appended data.
+///
+/// What is compressed may become a thousand times as long: it is expanded only where its head says that it has no more bytes than so many
+/// numbers.
+pub(super) fn numbers(
+    header: &Header,
+    (array, most): (&Array, Option<usize>),
+    appended: &[u8],
+) -> Result<Numbers, Fault> {
     let Some((size, is_real, has_sign)) = number_type(&array.number) else {
         return Err(format!("numbers of type \"{}\"", array.number));
     };
+    let most = most.and_then(|most| most.checked_mul(size));
+    let header = (header, most.unwrap_or(LARGEST).min(LARGEST));
     let bytes = match array.format {
         Format::Ascii => return of_text(&array.text, is_real),
         Format::Binary => of_base64(header, array.text.trim())?,
         Format::Appended(offset) => {
             let from = appended.get(offset..);
             let from = from.ok_or_else(|| format!("an offset of {offset} beyond the data"))?;
-            match header.raw {
+            match header.0.raw {
                 true => of_raw(header, from)?,
                 false => {
                     let text = from.split(|byte| *byte == b'<').next().unwrap_or_default();
@@ -147,8 +156,8 @@ fn word(header: &Header, bytes: &[u8], place: usize) -> Result<usize, Fault> {
     usize::try_from(u64::from_le_bytes(all)).map_err(|_| "an array without end".to_owned())
 }
 
-/// Lengths of the compressed blocks, and the length of all when they are not.
-fn blocks(header: &Header, head: &[u8]) -> Result<(Vec<usize>, usize), Fault> {
+/// Lengths of the compressed blocks, and the length of all when they are not, which is `most` at most.
+fn blocks((header, most): (&Header, usize), head: &[u8]) -> Result<(Vec<usize>, usize), Fault> {
     let [count, block, last] = [0, 1, 2].map(|place| word(header, head, place));
     let (count, block, last) = (count?, block?, last?);
     let there = head.len() / header.word;
@@ -165,9 +174,14 @@ fn blocks(header: &Header, head: &[u8]) -> Result<(Vec<usize>, usize), Fault> {
     let all = whole
         .checked_mul(block)
         .and_then(|all| all.checked_add(last));
-    match all.filter(|all| *all <= LARGEST) {
+    match all.filter(|all| *all <= most) {
         Some(all) => Ok((lengths, all)),
-        None => Err("an array of more than 16 GiB".to_owned()),
+        None => {
+            let found = all.map_or("without end".to_owned(), |all| format!("of {all} bytes"));
+            Err(format!(
+                "a compressed array {found} in place of {most} at most"
+            ))
+        }
     }
 }
 
@@ -193,9 +207,10 @@ fn inflated(lengths: &[usize], all: usize, mut from: &[u8]) -> Result<Vec<u8>, F
     }
 }
 
-fn of_raw(header: &Header, from: &[u8]) -> Result<Vec<u8>, Fault> {
+/// `most`: bytes that a compressed array may have.
+fn of_raw((header, most): (&Header, usize), from: &[u8]) -> Result<Vec<u8>, Fault> {
     if header.compressed {
-        let (lengths, all) = blocks(header, from)?;
+        let (lengths, all) = blocks((header, most), from)?;
         let head = (3 + lengths.len()) * header.word;
         return inflated(&lengths, all, &from[head..]);
     }
@@ -205,8 +220,8 @@ fn of_raw(header: &Header, from: &[u8]) -> Result<Vec<u8>, Fault> {
     Ok(bytes.ok_or("an array that is cut off")?.to_vec())
 }
 
-/// Head and data of an array are encoded apart where it is compressed, together otherwise.
-fn of_base64(header: &Header, text: &str) -> Result<Vec<u8>, Fault> {
+/// Head and data of an array are encoded apart where it is compressed, together otherwise. `most`: as in [`of_raw`].
+fn of_base64((header, most): (&Header, usize), text: &str) -> Result<Vec<u8>, Fault> {
     let decoded = |text: &str| {
         let bytes = STANDARD.decode(text);
         bytes.map_err(|error| format!("base64 that is damaged ({error})"))
@@ -238,7 +253,7 @@ fn of_base64(header: &Header, text: &str) -> Result<Vec<u8>, Fault> {
     let text_of_head = text
         .get(..head)
         .ok_or("an array that ends within its head")?;
-    let (lengths, all) = blocks(header, &decoded(text_of_head)?)?;
+    let (lengths, all) = blocks((header, most), &decoded(text_of_head)?)?;
     let data: usize = lengths
         .iter()
         .fold(0, |sum: usize, length| sum.saturating_add(*length));

@@ -107,7 +107,8 @@ impl File<'_> {
                 false,
             )
         };
-        let values = numbers(&self.document.header, array, self.appended);
+        let most = self.document.points.checked_mul(3);
+        let values = numbers(&self.document.header, (array, most), self.appended);
         let values = values.map_err(wrong)?.reals();
         if array.components != 3 || values.len() != 3 * self.document.points {
             let found = format!(
@@ -134,7 +135,11 @@ impl File<'_> {
                 false,
             )
         };
-        let values = numbers(&self.document.header, array, self.appended).map_err(wrong)?;
+        // all cells have as many nodes as the kind with the most
+        let nodes = Kind::ALL.iter().map(|kind| kind.table().nodes).max();
+        let most = count.or(self.document.cells.checked_mul(nodes.unwrap_or(0)));
+        let values = numbers(&self.document.header, (array, most), self.appended);
+        let values = values.map_err(wrong)?;
         let found = format!("{} numbers", values.len());
         let values = values
             .integers()
@@ -193,7 +198,8 @@ impl File<'_> {
         let of_cells = arrays.filter(|array| array.section == "CellData" && array.components == 1);
         for array in of_cells.filter(|array| array.number.contains("Int")) {
             let wrong = |found: String| (array.line, found, "an integer for each cell", false);
-            let values = numbers(&self.document.header, array, self.appended).map_err(wrong)?;
+            let own = (array, Some(ids.len()));
+            let values = numbers(&self.document.header, own, self.appended).map_err(wrong)?;
             let found = format!("{} numbers for {} cells", values.len(), ids.len());
             let values = values.integers().filter(|values| values.len() == ids.len());
             let values = values.ok_or_else(|| wrong(found))?;

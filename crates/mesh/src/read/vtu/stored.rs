@@ -65,8 +65,10 @@ impl File<'_> {
             };
             let wrong =
                 |found: String| (array.line, found, "a value for each point or cell", false);
-            let values = numbers(&self.document.header, array, self.appended).map_err(wrong)?;
-            if Some(values.len()) != count.checked_mul(array.components) {
+            let expected = count.checked_mul(array.components);
+            let own = (array, expected);
+            let values = numbers(&self.document.header, own, self.appended).map_err(wrong)?;
+            if Some(values.len()) != expected {
                 return Err(wrong(format!("{} numbers", values.len())));
             }
             fields.push(StoredArray {

@@ -10,6 +10,7 @@ use crate::maxima::{Maxima, Maximum};
 use crate::plot::{quantity, scientific};
 use crate::results::Results;
 use crate::results::outlines::size;
+use crate::statistics::Margin;
 use crate::summary::{Contact, Energy, Summary};
 use crate::verdict::Grade;
 
@@ -47,6 +48,7 @@ fn tile(label: &'static str, value: String, note: String, section: &'static str)
 /// All tiles in their order.
 pub(crate) fn tiles(results: &Results, summary: &Summary) -> Vec<Tile> {
     let mut tiles = vec![verdict(summary)];
+    tiles.extend(margin(summary));
     tiles.extend(of_contacts(results, summary));
     tiles.push(energy(&summary.energy));
     tiles.extend(of_fields(results, &summary.maxima));
@@ -78,6 +80,44 @@ fn verdict(summary: &Summary) -> Tile {
     }
 }
 
+/// The least margin of all that the case allows.
+fn margin(summary: &Summary) -> Option<Tile> {
+    let of_levels = summary.levels.iter().flat_map(|(name, level)| {
+        let all = [
+            ("force", "N", &level.force_margin),
+            ("energy", "J", &level.energy_margin),
+            ("stroke", "m", &level.stroke_margin),
+            ("crush", "m", &level.crush_margin),
+        ];
+        all.into_iter().filter_map(move |(what, unit, margin)| {
+            let margin = margin.clone()?;
+            Some((format!("{what} of level {name}"), unit, margin, "levels"))
+        })
+    });
+    let of_parts = summary.allowables.iter().map(|check| {
+        let of = format!("{} of {} {}", check.quantity, check.kind, check.name);
+        (of, check.unit.as_str(), check.margin.clone(), "allowables")
+    });
+    let all: Vec<(String, &str, Margin, &'static str)> = of_levels.chain(of_parts).collect();
+    let known = all.iter().filter_map(|one| Some((one, one.2.margin?)));
+    let exceeded = known.clone().filter(|(_, left)| *left < 0.0).count();
+    let ((of, unit, margin, section), left) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let [found, allowable] = [margin.found, margin.allowable].map(|value| quantity(value, unit));
+    let others = match all.len() {
+        1 => String::new(),
+        count => format!("; least of {count} margins, {exceeded} allowables exceeded"),
+    };
+    Some(Tile {
+        grade: if left < 0.0 { "bad" } else { "good" },
+        ..tile(
+            "Margin",
+            percent(left),
+            format!("{of}: {found} of {allowable}{others}"),
+            *section,
+        )
+    })
+}
+
 /// Of the contact with the largest force.
 fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
     let Some((name, contact, _)) = largest(&summary.contacts, |c| Some(c.peak_force)) else {
@@ -102,17 +142,50 @@ fn of_contacts(results: &Results, summary: &Summary) -> Vec<Tile> {
         let window = quantity(contact.window, "s");
         format!("; mean over {window}: {}", quantity(mean, "N"))
     });
-    let steps = format!("{at}of a single step{}", mean.unwrap_or_default());
+    let loaded = preload(contact).map(|[preload, shock]| {
+        let [preload, shock] = [preload, shock].map(|force| quantity(force, "N"));
+        format!("; of it preload {preload}, shock {shock}")
+    });
+    let steps = format!(
+        "{at}of a single step{}{}",
+        loaded.unwrap_or_default(),
+        mean.unwrap_or_default()
+    );
     let peak = quantity(contact.peak_force, "N");
     let mut tiles = vec![Tile {
         time: record.map(|record| record.peak_time),
         ..tile("Peak force", peak, format!("{of}{steps}"), "plot-force")
     }];
+    tiles.extend(shock(&summary.contacts));
     tiles.extend(impulse(results, summary));
     if contact.impulse.is_some() {
         tiles.push(restitution(summary, name, contact));
     }
     tiles
+}
+
+/// The force at the end of a static stage, and what the largest force has over it, N; none of a contact that carries nothing there.
+fn preload(contact: &Contact) -> Option<[f64; 2]> {
+    let preload = contact.preload.filter(|preload| *preload > 0.0)?;
+    Some([preload, (contact.peak_force - preload).max(0.0)])
+}
+
+/// Of the contact whose force grows most over its preload: a large preload hides the shock, and the shock of another contact.
+fn shock(contacts: &BTreeMap<String, Contact>) -> Option<Tile> {
+    let is_loaded = |contact: &Contact| preload(contact).is_some();
+    if !contacts.values().any(is_loaded) {
+        return None;
+    }
+    let over = |contact: &Contact| preload(contact).map_or(contact.peak_force, |[_, over]| over);
+    let (name, contact, most) = largest(contacts, |contact| Some(over(contact)))?;
+    let of = match contacts.len() {
+        1 => String::new(),
+        count => format!("{name}, largest of {count} contacts; "),
+    };
+    let [peak, before] = [contact.peak_force, contact.peak_force - most];
+    let [peak, before] = [peak, before].map(|force| quantity(force, "N"));
+    let note = format!("{of}largest force {peak} less the preload {before}");
+    Some(tile("Shock", quantity(most, "N"), note, "plot-force"))
 }
 
 /// The contact with the largest number of those that have one, and that number; the last of equals.
@@ -292,6 +365,28 @@ fn coordinates(system: &System, x: &[f64]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_shock_is_told_beside_a_preload_that_is_larger() {
+        let contact = |peak_force, preload| Contact {
+            peak_force,
+            preload,
+            ..Contact::default()
+        };
+        let both = |contacts: [(&str, Contact); 2]| -> BTreeMap<String, Contact> {
+            contacts.map(|(name, one)| (name.to_owned(), one)).into()
+        };
+        let loaded = [
+            ("bolt", contact(20e3, Some(19e3))),
+            ("rail", contact(3e3, Some(0.0))),
+        ];
+        let tile = shock(&both(loaded)).unwrap();
+        assert_eq!((tile.label, &tile.value[..]), ("Shock", "3.00 kN"));
+        assert!(tile.note.starts_with("rail"), "{}", tile.note);
+        assert_eq!(preload(&contact(20e3, Some(19e3))), Some([19e3, 1e3]));
+        let without = [("bolt", contact(20e3, None)), ("rail", contact(3e3, None))];
+        assert_eq!(shock(&both(without)), None);
+    }
 
     #[test]
     fn the_largest_force_and_the_largest_impulse_may_be_of_two_contacts() {

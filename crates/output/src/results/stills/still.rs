@@ -33,6 +33,8 @@ pub(crate) struct Still {
     pub(crate) deleted: Option<Vec<bool>>,
     /// Largest equivalent stress (Pa), plastic strain and magnitude of a principal strain of all cells.
     pub(crate) largest: [Option<Largest>; 3],
+    /// Largest equivalent stress (Pa) and plastic strain of each body.
+    pub(crate) of_bodies: Vec<[Option<f64>; 2]>,
     /// Kinetic energy ½ Σ m |v|² of each body with lumped masses, J.
     pub(crate) kinetic: Vec<f64>,
     /// Strain energy of each body, J; not finite where a body has none at this state.
@@ -64,7 +66,7 @@ impl Still {
             && [self.von_mises.len(), self.pressure.len()] == [cells; 2]
             && self.plastic.as_ref().is_none_or(|own| own.len() == cells)
             && self.deleted.as_ref().is_none_or(|own| own.len() == all)
-            && [self.kinetic.len(), self.strain.len()] == [bodies; 2]
+            && [self.kinetic.len(), self.strain.len(), self.of_bodies.len()] == [bodies; 3]
             && largest.into_iter().all(|one| (one.cell as usize) < all)
     }
 
@@ -101,6 +103,10 @@ impl Still {
             cell,
             moved: middle_moved(system, motion, cell),
         };
+        let of_bodies = [Some(&von_mises), plastic.as_ref()].map(|values| {
+            let values = values.map_or(&[][..], |values| &values[..]);
+            by_body(values, (seen, system.bodies.len()), is_there)
+        });
         let largest = |values: &[f64]| largest(values, is_there).map(at);
         Still {
             step,
@@ -116,6 +122,14 @@ impl Still {
                 plastic.and_then(|plastic| largest(&plastic)),
                 strained.map(at),
             ],
+            of_bodies: {
+                let [stress, plastic] = of_bodies;
+                stress
+                    .into_iter()
+                    .zip(plastic)
+                    .map(|(stress, plastic)| [stress, plastic])
+                    .collect()
+            },
             kinetic: kinetic(system, motion),
             strain: strain(system, motion),
             marks: marks(system, motion, interface, time),
@@ -134,6 +148,22 @@ fn largest(values: &[f64], is_there: impl Fn(usize) -> bool) -> Option<(f64, u32
     };
     let best = cells.fold((f64::NEG_INFINITY, 0), larger);
     best.0.is_finite().then_some(best)
+}
+
+/// The largest of the values of the cells of each body that are there; none of a body without such values.
+fn by_body(
+    values: &[f64],
+    (seen, bodies): (&Seen, usize),
+    is_there: impl Fn(usize) -> bool,
+) -> Vec<Option<f64>> {
+    let mut most: Vec<Option<f64>> = vec![None; bodies];
+    for (cell, (value, body)) in values.iter().zip(&seen.body_of_cell).enumerate() {
+        if value.is_finite() && is_there(cell) {
+            let most = &mut most[*body as usize];
+            *most = Some(most.map_or(*value, |most: f64| most.max(*value)));
+        }
+    }
+    most
 }
 
 /// Mean displacement of the nodes of a cell, m.

@@ -1,0 +1,60 @@
+//! What bodies, supports and springs may bear.
+
+use carom_dynamics::System;
+use carom_output::{AllowableSettings, Bearer};
+
+use super::Builder;
+use crate::error::Problem;
+
+impl Builder<'_> {
+    /// All that the case allows, bodies and supports by their places in the system.
+    pub(super) fn allowables(&mut self, system: &System) -> Vec<AllowableSettings> {
+        let Some(given) = &self.case.output.allowable else {
+            return Vec::new();
+        };
+        let mut all = Vec::new();
+        let mut add = |of: Bearer, allowable: Option<f64>| {
+            all.extend(allowable.map(|allowable| AllowableSettings { of, allowable }));
+        };
+        let names: Vec<&str> = system.bodies.iter().map(|body| body.name()).collect();
+        for (name, body) in given.body.iter() {
+            let Some(number) = names.iter().position(|own| *own == name) else {
+                let own = self.case.body.names();
+                self.unknown_bearer("body", name, own.collect());
+                continue;
+            };
+            add(Bearer::Stress(number), body.stress.map(|stress| stress.0));
+            add(Bearer::PlasticStrain(number), body.plastic_strain);
+        }
+        let names: Vec<&str> = system.supports.iter().map(|s| s.name.as_str()).collect();
+        for (name, support) in given.support.iter() {
+            let Some(number) = names.iter().position(|own| *own == name) else {
+                self.unknown_bearer("support", name, names.clone());
+                continue;
+            };
+            add(Bearer::Support(number), Some(support.force.0));
+        }
+        let names: Vec<&str> = self.case.spring.names().collect();
+        for (name, spring) in given.spring.iter() {
+            if !names.contains(&name) {
+                self.unknown_bearer("spring", name, names.clone());
+                continue;
+            }
+            add(
+                Bearer::SpringForce(name.to_owned()),
+                spring.force.map(|force| force.0),
+            );
+            add(
+                Bearer::SpringStroke(name.to_owned()),
+                spring.stroke.map(|stroke| stroke.0),
+            );
+        }
+        all
+    }
+
+    fn unknown_bearer(&mut self, kind: &str, name: &str, names: Vec<&str>) {
+        let path = format!("output.allowable.{kind}.{name}");
+        let problem = Problem::new(path, format!("no {kind} of this name"));
+        self.problems.push(problem.unknown(name, names));
+    }
+}

@@ -1,0 +1,85 @@
+//! What bodies, supports and springs had to bear, against what the case allows.
+
+use carom_dynamics::StepReport;
+use serde::{Deserialize, Serialize};
+
+use crate::results::Results;
+use crate::results::settings::{AllowableSettings, Bearer};
+use crate::results::stills::Still;
+use crate::statistics::{Check, Margin};
+
+/// Largest forces of the named supports, N, and when, s.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub(crate) struct SupportPeaks {
+    peaks: Vec<[f64; 2]>,
+}
+
+impl SupportPeaks {
+    /// Whether this can be gone on with where there are so many supports.
+    pub(crate) fn is_of(&self, supports: usize) -> bool {
+        [0, supports].contains(&self.peaks.len())
+    }
+
+    /// Takes the forces of a step.
+    pub(crate) fn push(&mut self, report: &StepReport) {
+        self.peaks
+            .resize(report.supports.len().max(self.peaks.len()), [0.0; 2]);
+        for (peak, support) in self.peaks.iter_mut().zip(&report.supports) {
+            let magnitude = support.linear.iter().map(|f| f * f).sum::<f64>().sqrt();
+            if magnitude > peak[0] {
+                *peak = [magnitude, report.time];
+            }
+        }
+    }
+}
+
+/// All that the case allows, with what was found.
+pub(crate) fn checks(results: &Results, stills: &[&Still]) -> Vec<Check> {
+    let settings = results.settings.allowables.iter();
+    settings
+        .map(|allowed| check(results, stills, allowed))
+        .collect()
+}
+
+fn check(results: &Results, stills: &[&Still], allowed: &AllowableSettings) -> Check {
+    let body = |body: usize| results.system.bodies[body].name().to_owned();
+    let all = results.discrete.all();
+    let (quantity, kind, name, unit, found) = match &allowed.of {
+        Bearer::Stress(number) => {
+            let found = largest(stills, *number, 0);
+            ("von Mises stress", "body", body(*number), "Pa", found)
+        }
+        Bearer::PlasticStrain(number) => {
+            let found = largest(stills, *number, 1);
+            ("plastic strain", "body", body(*number), "", found)
+        }
+        Bearer::Support(number) => {
+            let name = results.system.supports[*number].name.clone();
+            let found = results.supports.peaks.get(*number).copied();
+            ("force", "support", name, "N", found)
+        }
+        Bearer::SpringForce(name) => {
+            let found = all.get(name).map(|spring| [spring.peak_force, spring.time]);
+            ("force", "spring", name.clone(), "N", found)
+        }
+        Bearer::SpringStroke(name) => {
+            let found = all.get(name).map(|spring| [spring.extent, spring.time]);
+            ("stroke", "spring", name.clone(), "m", found)
+        }
+    };
+    let governing = found.map(|[value, time]| (value, (name.clone(), time)));
+    Check {
+        quantity: quantity.to_owned(),
+        kind: kind.to_owned(),
+        unit: unit.to_owned(),
+        margin: Margin::of(allowed.allowable, governing),
+        name,
+    }
+}
+
+/// The largest value of a field in a body at the kept instants, and when: stress, plastic strain.
+fn largest(stills: &[&Still], body: usize, field: usize) -> Option<[f64; 2]> {
+    let values = stills.iter();
+    let values = values.filter_map(|still| Some([still.of_bodies.get(body)?[field]?, still.time]));
+    values.reduce(|best, other| if other[0] > best[0] { other } else { best })
+}
