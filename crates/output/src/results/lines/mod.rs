@@ -12,6 +12,7 @@ mod momentum;
 mod penetration;
 mod resolution;
 mod small;
+mod tolerated;
 
 use crate::verdict::Verdict;
 use finding::worst;
@@ -36,6 +37,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     explicit::deleted_cells,
     explicit::loose_nodes,
     chatter::of_contacts,
+    tolerated::tension,
     penetration::of_contacts,
     penetration::of_passing,
     resolution::of_peaks,
