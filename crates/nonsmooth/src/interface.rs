@@ -403,7 +403,7 @@ impl Interface {
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let mut cut: Vec<(usize, Status)> = Vec::new();
-        let mut settled = false;
+        let mut settled = candidates.is_empty();
         for _ in 0..2 * candidates.len() {
             let before = cut.len();
             for (i, candidate) in candidates.iter().enumerate() {
@@ -429,7 +429,7 @@ impl Interface {
             self.equalities(candidates, compliance, s)?;
         }
         if !settled {
-            self.unsettled = cut.first().map(|(i, _)| *i);
+            self.unsettled = Some(cut.first().map_or(0, |(i, _)| *i));
         }
         for (i, status) in cut {
             self.statuses[i] = status;
