@@ -94,6 +94,27 @@
       wrong(viewer.choice.field !== value, `the field ${value} is not chosen`);
       picture();
     }
+    const range = document.querySelector("#model-range select");
+    const choose = (value) => {
+      range.value = value;
+      range.dispatchEvent(new Event("change"));
+    };
+    viewer.colour("displacement");
+    const ofRun = picture();
+    choose("hand");
+    wrong(document.getElementById("model-limits").hidden, "the ends of the colours cannot be written");
+    wrong(differ(ofRun, picture()), "the ends by hand are not those of the run at first");
+    const [lower, upper] = document.querySelectorAll("#model-limits input");
+    if (Number(upper.value) > 0) {
+      upper.value = Number(upper.value) / 10;
+      upper.dispatchEvent(new Event("change"));
+      wrong(!differ(ofRun, picture()), "the ends by hand change no colours");
+      const [, set] = viewer.colouring.range;
+      upper.value = lower.value;
+      upper.dispatchEvent(new Event("change"));
+      wrong(viewer.colouring.range[1] !== set, "a range without extent is taken");
+    }
+    choose("run");
     const group = document.querySelector("#model-group select");
     wrong(Boolean(group) !== (head.model.groups.length > 0), "the choice of a group");
     if (group) {

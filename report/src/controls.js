@@ -1,6 +1,6 @@
 // The buttons and sliders of the model.
 
-import { digits, quantity } from "./format.js";
+import { digits, prefix, quantity } from "./format.js";
 
 const element = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);
@@ -19,6 +19,51 @@ function select(label, options, onchange) {
 function check(label, checked, onchange) {
   const box = element("input", { type: "checkbox", checked, onchange: (e) => onchange(e.target.checked) });
   return element("label", {}, box, ` ${label}`);
+}
+
+/** The range of the colours: of the run, of an instant, or two limits that the reader writes, in the unit of the legend. */
+function range(viewer) {
+  const { choice } = viewer;
+  let unit = [1, ""];
+  const limit = (name, at) => {
+    const input = element("input", {
+      type: "number",
+      step: "any",
+      ariaLabel: `${name} end of the colours`,
+      onchange: () => {
+        const limits = [...viewer.limits()];
+        // an empty box is no number
+        limits[at] = input.value === "" ? NaN : Number(input.value) * unit[0];
+        if (Number.isFinite(limits[at]) && limits[0] < limits[1]) {
+          choice.limits[choice.field] = limits;
+          viewer.show();
+        }
+        fill();
+      },
+    });
+    return input;
+  };
+  const ends = [limit("lower", 0), limit("upper", 1)];
+  const word = element("span");
+  const boxes = element("span", { id: "model-limits", hidden: true }, "from ", ends[0], " to ", ends[1], " ", word);
+  const fill = () => {
+    const look = viewer.colouring;
+    boxes.hidden = choice.range !== "hand" || Boolean(look.categories);
+    if (boxes.hidden) return;
+    const limits = viewer.limits();
+    unit = prefix(Math.max(...limits.map(Math.abs)), look.unit);
+    // what the reader wrote, without the rounding of the prefix
+    ends.forEach((end, k) => (end.value = Number((limits[k] / unit[0]).toPrecision(6))));
+    word.textContent = `${unit[1]}${look.unit}`;
+  };
+  const options = [["run", "of all instants"], ["frame", "of this instant"], ["hand", "by hand"]];
+  const choose = select("range", options, (value) => {
+    choice.range = value;
+    viewer.show();
+    fill();
+  });
+  choose.id = "model-range";
+  return { elements: [choose, boxes], fill };
 }
 
 /** Builds the controls of a viewer; how it tells them what it shows. */
@@ -62,12 +107,10 @@ export function controls(viewer) {
     },
   });
   const colours = select("colour", instants.fields.map((f) => [f.id, f.name]), (id) => viewer.colour(id));
+  const limits = range(viewer);
   settings.append(
     colours,
-    select("range", [["run", "of all instants"], ["frame", "of this instant"]], (range) => {
-      choice.range = range;
-      viewer.show();
-    }),
+    ...limits.elements,
     element("label", {}, "displacements × ", factor),
   );
   const drawing = (change) => (on) => {
@@ -144,6 +187,7 @@ export function controls(viewer) {
     },
     coloured(field) {
       colours.firstElementChild.value = field;
+      limits.fill();
     },
     playing(on) {
       play.textContent = on ? "❚❚ stop" : "▶ play";

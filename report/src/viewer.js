@@ -55,6 +55,7 @@ class Viewer {
       frame: Math.max(0, this.instants.frames.findIndex((f) => f.kinds.includes("largest stress"))),
       field: this.instants.fields[0].id,
       range: "run",
+      limits: {},
       section: null,
       peak: true,
       edges: !this.model.decimated_from,
@@ -97,7 +98,7 @@ class Viewer {
     this.parts.show(this.instants.visible(frame));
     this.parts.pose(still.poses);
     this.parts.mark(this.instants.touching(frame));
-    const look = this.instants.look(field, this.choice.range === "run" ? null : frame);
+    const look = this.colouring;
     this.parts.paint(this.instants.values(field, frame), look);
     const largest = Math.max(...this.instants.look(field, null).range.map(Math.abs));
     const found = this.instants.peak(field, frame);
@@ -127,6 +128,19 @@ class Viewer {
     this.show();
   }
 
+  /** Ends of the colours by hand of the field that is shown: at first those of all instants. */
+  limits() {
+    const { field, limits } = this.choice;
+    return limits[field] ?? this.instants.look(field, null).range;
+  }
+
+  /** How the field that is shown is coloured at this instant. */
+  get colouring() {
+    const { field, frame, range } = this.choice;
+    const look = this.instants.look(field, range === "frame" ? frame : null);
+    return range === "hand" && !look.categories ? { ...look, range: this.limits(), byHand: true } : look;
+  }
+
   legend(look, peak) {
     const legend = document.getElementById("model-legend");
     legend.replaceChildren();
@@ -146,7 +160,9 @@ class Viewer {
     const bar = document.createElement("span");
     bar.className = "ramp";
     bar.style.background = gradient(look.map);
-    legend.append(quantity(low, look.unit), bar, `${quantity(high, look.unit)} ${look.note ?? ""}`);
+    // beyond ends by hand the colours stay those of the ends
+    const [under, over] = look.byHand ? ["≤ ", "≥ "] : ["", ""];
+    legend.append(`${under}${quantity(low, look.unit)}`, bar, `${over}${quantity(high, look.unit)} ${look.note ?? ""}`);
     if (!peak) return;
     const place = document.createElement("span");
     place.id = "model-peak";

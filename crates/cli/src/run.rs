@@ -231,6 +231,9 @@ fn print(summary: &Summary, folder: &Path) {
         summary.momentum.relative_residual,
         of_scheme(summary)
     );
+    for notice in &summary.notices {
+        out!("  note: {}", line(notice));
+    }
     out!("  {}", cost(summary));
     out!("  {}", verdict(summary));
     out!("  report: {}", folder.join("report.html").display());

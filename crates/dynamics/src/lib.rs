@@ -71,7 +71,7 @@ pub use march::{
 pub use moment::moment;
 pub use on_ranks::OnRanks;
 pub use records::{ContactRecord, Records};
-pub use report::{ContactReport, ContactSample, StepReport};
+pub use report::{ContactReport, ContactSample, Notice, Notices, StepReport};
 pub use resultant::Resultant;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use shared::SharedNodes;

@@ -52,6 +52,58 @@ pub struct ContactSample {
     pub contacts: Vec<ContactReport>,
 }
 
+/// Something that a step went on after, and that people should know.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Notice {
+    /// How often.
+    pub count: u32,
+    /// Where, or why, the first time.
+    pub place: String,
+}
+
+impl Notice {
+    /// Once more.
+    pub(crate) fn add(&mut self, place: impl FnOnce() -> String) {
+        if self.count == 0 {
+            self.place = place();
+        }
+        self.count += 1;
+    }
+
+    fn join(&mut self, other: &Notice) {
+        if self.count == 0 {
+            self.place.clone_from(&other.place);
+        }
+        self.count += other.count;
+    }
+}
+
+/// All that a step went on after.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Notices {
+    /// Iterations whose motion was halved as often as it may be, that left the forces less in balance than before, and were taken: where the imbalance
+    /// was largest. The step has come to its tolerance nevertheless.
+    pub worse: Notice,
+    /// Iterations of linear equations that ended without a solution, after which the step was taken with factors: why.
+    pub factored: Notice,
+    /// Contact problems whose tension, which the law cuts off, did not settle in the last iteration: the first point.
+    pub clipped: Notice,
+}
+
+impl Notices {
+    /// Adds those of a part of the step, or of a zone.
+    pub fn join(&mut self, other: &Notices) {
+        self.worse.join(&other.worse);
+        self.factored.join(&other.factored);
+        self.clipped.join(&other.clipped);
+    }
+
+    /// All of them, in the order of the fields.
+    pub fn all(&self) -> [&Notice; 3] {
+        [&self.worse, &self.factored, &self.clipped]
+    }
+}
+
 /// What a step did.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepReport {
@@ -77,6 +129,8 @@ pub struct StepReport {
     /// What the contacts did in the parts of the step, where it has some: the inner steps of zones, the halves of a nonlinear
     /// step that found no equilibrium. A contact of a zone without inner steps does in each part what it does in the step.
     pub samples: Vec<ContactSample>,
+    /// What the step went on after; of zones with inner steps in the last of them.
+    pub notices: Notices,
     /// Whether the state is known at watched nodes alone, and contact points where somebody looks at them, since other processes have the rest.
     pub partial: bool,
 }

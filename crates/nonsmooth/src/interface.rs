@@ -117,6 +117,8 @@ pub struct Interface {
     pub passes: usize,
     /// The candidate from which on statuses changed one at a time, if blocks of changes went in circles.
     pub circled: Option<usize>,
+    /// A candidate whose tension was cut off, where points that lose and regain their forces by turns did not settle.
+    pub unsettled: Option<usize>,
     /// Ends passes without a solution where it is set.
     pub interrupt: Interrupt,
     factor: Option<DenseCholesky>,
@@ -168,7 +170,7 @@ impl Interface {
             );
         self.reversals.clear();
         self.reversals.resize(n, 0);
-        self.circled = None;
+        (self.circled, self.unsettled) = (None, None);
         self.rough = match compliance.0 {
             Compliance::Iterated(_) => ROUGH,
             Compliance::Dense(_) | Compliance::Lumped(_) => 0.0,
@@ -401,6 +403,7 @@ impl Interface {
         s: [f64; 2],
     ) -> Result<(), Failure> {
         let mut cut: Vec<(usize, Status)> = Vec::new();
+        let mut settled = candidates.is_empty();
         for _ in 0..2 * candidates.len() {
             let before = cut.len();
             for (i, candidate) in candidates.iter().enumerate() {
@@ -417,12 +420,16 @@ impl Interface {
                     relation.gap * end.gap + relation.rate * end.rate + relation.offset < 0.0
                 };
                 let Some(back) = cut.iter().position(presses) else {
+                    settled = true;
                     break;
                 };
                 let (i, status) = cut.remove(back);
                 self.statuses[i] = status;
             }
             self.equalities(candidates, compliance, s)?;
+        }
+        if !settled {
+            self.unsettled = Some(cut.first().map_or(0, |(i, _)| *i));
         }
         for (i, status) in cut {
             self.statuses[i] = status;

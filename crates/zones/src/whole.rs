@@ -17,7 +17,7 @@ use carom_dynamics::Costs;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::{InterfaceState, State, empty_state};
 use carom_dynamics::{Balance, Impact, Ledger, Tolerated};
-use carom_dynamics::{ContactReport, ContactSample, StepReport};
+use carom_dynamics::{ContactReport, ContactSample, Notices, StepReport};
 use carom_dynamics::{FailedProblem, Stepper};
 use carom_system::{Motion, System};
 
@@ -388,6 +388,10 @@ impl Stepper for Whole {
     fn step(&mut self) -> Result<(), carom_dynamics::Error> {
         self.zones.step()?;
         self.gather();
+        self.report.notices = Notices::default();
+        for driver in &self.zones.drivers {
+            self.report.notices.join(&driver.report().notices);
+        }
         Ok(())
     }
 

@@ -138,6 +138,7 @@ impl Driver {
         for &candidate in spans.iter().flat_map(|span| &span.circled) {
             self.warn_of_circle(candidate);
         }
+        self.note_clipped(spans.iter().find_map(|span| span.unsettled));
     }
 
     /// What the laws of the candidates know, and what friction adds to each; nothing without friction. `room`: a system vector.

@@ -5,11 +5,13 @@ use std::time::Instant;
 use super::Driver;
 use crate::costs::Phases;
 use crate::error::Error;
+use crate::report::Notices;
 
 impl Driver {
     /// Computes the next state from the state, a step of `dt` further, of an explicit scheme before one of the size `next`
     /// (both s).
     pub(super) fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error> {
+        self.notices = Notices::default();
         let outcome = self.attempt_to_the_end(dt, next);
         self.unless_interrupted(outcome)
     }

@@ -252,6 +252,7 @@ impl Driver {
     /// Writes the forces and statuses found, and adds the forces, times `factor`, to the begun solve.
     pub(super) fn take_forces(&mut self, factor: f64) -> Result<(), Error> {
         let system = Arc::clone(&self.system);
+        self.note_clipped(self.interface.unsettled);
         let Some((operators, compliance, linking)) = self.effective.all() else {
             return Ok(());
         };
@@ -297,7 +298,7 @@ impl Driver {
         all.forces.resize(n, 0.0);
         all.statuses.clear();
         all.statuses.resize(n, Status::Open);
-        (all.passes, all.circled) = (0, None);
+        (all.passes, all.circled, all.unsettled) = (0, None, None);
         let mut failed = None;
         for (group, range) in compliance.groups().ranges().enumerate() {
             let places = &compliance.groups().order()[range];
@@ -322,6 +323,8 @@ impl Driver {
             all.passes = all.passes.max(solver.passes);
             let circled = solver.circled.map(|k| places[k] as usize);
             all.circled = all.circled.or(circled);
+            let unsettled = solver.unsettled.map(|k| places[k] as usize);
+            all.unsettled = all.unsettled.or(unsettled);
         }
         if let Some((failure, block, places)) = failed {
             self.keep_places(&places);
@@ -338,6 +341,15 @@ impl Driver {
         (self.candidates, self.candidate_data) = (points, data);
     }
 
+    /// Notes the candidate whose tension did not settle, if there is one, in place of that of the iteration before.
+    pub(super) fn note_clipped(&mut self, candidate: Option<usize>) {
+        self.notices.clipped.count = 0;
+        if let Some(candidate) = candidate {
+            let place = self.name(self.candidates[candidate] as usize);
+            self.notices.clipped.add(|| place);
+        }
+    }
+
     /// Warns that statuses of contact points went in circles from this candidate on.
     pub(super) fn warn_of_circle(&self, candidate: usize) {
         let name = self.name(self.candidates[candidate] as usize);
@@ -349,6 +361,7 @@ impl Driver {
 
     /// No contact force at all.
     pub(super) fn release(&mut self) {
+        self.note_clipped(None);
         for point in self.active.within(0..self.system.points()) {
             self.next.interface.release(point);
             if let Some(slip) = self.slips.get_mut(point) {

@@ -17,6 +17,7 @@ use super::Driver;
 use super::paired::approaches;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
+use crate::report::Notices;
 use crate::scheme::{Scheme, Theta};
 use crate::state::State;
 use crate::step_map::StepMap;
@@ -80,6 +81,7 @@ impl Driver {
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
         if self.prepared {
+            self.notices = Notices::default();
             let outcome = self.take_stages().and_then(|()| self.check_finite());
             self.unless_interrupted(outcome)?;
         } else {
@@ -109,6 +111,7 @@ impl Driver {
         let (step, time) = (self.state.step, self.state.time);
         let mut control = self.next.control;
         control.take(None, (step, time, self.dt), self.system.dt);
+        self.report.notices.clone_from(&self.notices);
         self.accept(control, self.dt);
     }
 

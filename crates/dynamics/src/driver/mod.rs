@@ -92,7 +92,7 @@ use crate::coulomb::{Coulomb, FrictionProblem, Slip};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::of_contact::OfContact;
-use crate::report::StepReport;
+use crate::report::{Notices, StepReport};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::shapes::Rates;
@@ -205,6 +205,8 @@ pub struct Driver {
     state: State,
     next: State,
     report: StepReport,
+    /// What the attempt went on after.
+    notices: Notices,
     /// What the points of each contact did in the attempt: those of this process, then of all.
     of_contacts: Vec<OfContact>,
     /// Room for nodal forces of a contact whose moment is reported, N.

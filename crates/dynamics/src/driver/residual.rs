@@ -208,18 +208,7 @@ impl Driver {
     }
 
     pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
-        let system = &*self.system;
-        let vectors = &self.vectors;
-        let imbalance = |i: usize| match system.fixed[i] {
-            true => 0.0,
-            false => (vectors.residual[i] + self.maps.contact() * vectors.contact[i]).abs(),
-        };
-        let larger = |best: usize, i: usize| match imbalance(i) > imbalance(best) {
-            true => i,
-            false => best,
-        };
-        let worst = (0..system.unknowns()).fold(0, larger);
-        let (node, body, cell) = self.place_of(worst);
+        let (node, body, cell) = self.place_of(self.worst_unknown());
         let contact = match self.worst_point() {
             Some((point, defect)) if defect > 1.0 => {
                 format!("; its law is missed most by {}", self.name(point))
@@ -239,6 +228,26 @@ impl Driver {
             contact: contact.into(),
             history: history.collect::<Vec<_>>().join(", ").into(),
         }
+    }
+
+    /// The unknown whose forces are least in balance.
+    fn worst_unknown(&self) -> usize {
+        let (system, vectors) = (&*self.system, &self.vectors);
+        let imbalance = |i: usize| match system.fixed[i] {
+            true => 0.0,
+            false => (vectors.residual[i] + self.maps.contact() * vectors.contact[i]).abs(),
+        };
+        let larger = |best: usize, i: usize| match imbalance(i) > imbalance(best) {
+            true => i,
+            false => best,
+        };
+        (0..system.unknowns()).fold(0, larger)
+    }
+
+    /// Where forces are least in balance, in words.
+    pub(super) fn place_of_imbalance(&self) -> String {
+        let (node, body, _) = self.place_of(self.worst_unknown());
+        format!("{node}, in body `{body}`")
     }
 
     /// Node of the mesh of an unknown, its body, and the first cell of the body at the node.

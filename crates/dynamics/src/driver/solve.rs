@@ -47,11 +47,12 @@ impl Driver {
     /// No equilibrium, an element or a matrix that fails.
     pub(super) fn solve(&mut self) -> Result<(), Error> {
         match self.solve_from_guesses() {
-            Err(error) if self.leaves_iterations() => {
+            Err(error) if !self.interrupt.is_set() && self.leaves_iterations() => {
                 tracing::debug!(
                     "step {}: {error}; once more with factors",
                     self.state.step + 1
                 );
+                self.notices.factored.add(|| error.to_string());
                 self.solve_from_guesses()
             }
             other => other,
@@ -339,7 +340,7 @@ impl Driver {
     fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
         self.vectors.before.copy_from_slice(&self.vectors.x);
         let mut share = 1.0;
-        let mut last = None;
+        let (mut last, mut gains) = (None, false);
         for shortening in 0..=SHORTENINGS {
             let vectors = &mut self.vectors;
             for (i, x) in vectors.x.iter_mut().enumerate() {
@@ -355,7 +356,7 @@ impl Driver {
                     let standing = self.standing();
                     let grows = standing.imbalance > GROWTH * before.imbalance.max(1e-6);
                     if jumps || !grows || self.is_affine() {
-                        last = Some(Ok(standing));
+                        (last, gains) = (Some(Ok(standing)), true);
                         break;
                     }
                     last = Some(Ok(standing));
@@ -373,6 +374,10 @@ impl Driver {
         }
         match last {
             Some(Ok(standing)) => {
+                if !gains {
+                    let place = self.place_of_imbalance();
+                    self.notices.worse.add(|| place);
+                }
                 // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as
                 // good as before
                 if share < 1.0 {

@@ -66,6 +66,8 @@ pub(super) struct Span {
     pub(super) passes: usize,
     /// Candidates from which on statuses changed one at a time.
     pub(super) circled: Vec<usize>,
+    /// A candidate whose tension did not settle.
+    pub(super) unsettled: Option<usize>,
     /// The first group that was not solved.
     pub(super) unsolved: Option<(Range<usize>, Unsolved)>,
     of_group: OfGroup,
@@ -79,7 +81,7 @@ impl Span {
     pub(super) fn solve(&mut self, of: &Candidates) {
         self.found.clear();
         self.circled.clear();
-        self.passes = 0;
+        (self.passes, self.unsettled) = (0, None);
         self.interface.interrupt.clone_from(of.interrupt);
         self.coulomb.interrupt.clone_from(of.interrupt);
         let groups = std::mem::take(&mut self.groups);
@@ -116,6 +118,8 @@ impl Span {
         self.passes = self.passes.max(self.interface.passes);
         let circled = self.interface.circled;
         self.circled.extend(circled.map(|k| group.start + k));
+        let unsettled = self.interface.unsettled.map(|k| group.start + k);
+        self.unsettled = self.unsettled.or(unsettled);
         let both = self.interface.forces.iter().zip(&self.interface.statuses);
         self.found.extend(both.map(|(&force, &status)| Found {
             force,

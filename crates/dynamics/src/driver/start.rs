@@ -35,7 +35,7 @@ use crate::interface::Interface;
 use crate::ledger::{Energies, Ledger, reactions};
 use crate::operator::Operators;
 use crate::records::Records;
-use crate::report::{ContactReport, StepReport};
+use crate::report::{ContactReport, Notices, StepReport};
 use crate::resultant::Resultant;
 use crate::shapes::Rates;
 use crate::state::{Links, State, empty_state, state_without_motion};
@@ -136,6 +136,7 @@ impl Driver {
             reactions: Vec::new(),
             of_contacts: Vec::new(),
             nodal: Vec::new(),
+            notices: Notices::default(),
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
                 ..StepReport::default()

@@ -10,7 +10,7 @@ use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
 use crate::march::{FailedProblem, Going, Scope, Stepper};
-use crate::report::StepReport;
+use crate::report::{Notices, StepReport};
 use crate::state::State;
 use crate::system::{Adaptive, System};
 
@@ -25,6 +25,7 @@ impl Driver {
     pub fn step(&mut self) -> Result<(), Error> {
         self.report.attempts = 0;
         self.report.samples.clear();
+        self.report.notices = Notices::default();
         match self.system.adaptive.is_some() && !self.is_static() {
             true => self.adapted_step(),
             false => self.step_in_parts(),
@@ -42,6 +43,7 @@ impl Driver {
         let forced = self.is_forced();
         let (mut control, attempts) = adapt(self, (control, first), (rules, system.dt), forced)?;
         self.report.attempts = attempts;
+        self.report.notices.join(&self.notices);
         let (step, time) = (self.state.step, self.state.time);
         self.next.step = step + 1;
         self.next.time = self.state.control.instant(step, time, self.dt);
@@ -75,6 +77,7 @@ impl Driver {
             match self.attempt(dt, dt) {
                 Ok(()) if std::mem::take(&mut forced) => {}
                 Ok(()) => {
+                    self.report.notices.join(&self.notices);
                     done += part;
                     if part < parts && !self.is_static() {
                         self.report.add_part(to, self.dt);

@@ -182,6 +182,28 @@ fn a_damper_that_is_cut_off_does_not_pull_its_neighbour() {
     assert!(pull(p, q, rates[0]) > 0.0);
     // the solve of one equation, to rounding
     assert!((q + pull(q, p, rates[1])).abs() < 1e-12, "{q}");
+    assert_eq!(interface.unsettled, None);
+}
+
+/// Three dampers of which each that is cut off lets another one press: they go in a circle.
+#[test]
+fn tension_that_does_not_settle_is_told_with_a_point_that_has_it() {
+    let law = Law::Damped(Damped {
+        stiffness: 2.0,
+        damping: 3.0,
+        adhesion: Adhesion::Clip,
+    });
+    let candidates = [-7.0, 9.0, 3.0].map(|rate_free| Candidate {
+        rate_free,
+        ..candidate(law, -1.0)
+    });
+    let d = [14.1, -18.0, -15.0, -18.0, 27.1, 24.0, -15.0, 24.0, 22.1];
+    let mut interface = Interface::default();
+    interface
+        .solve(&candidates, (Compliance::Dense(&d), 1), [0.01, 1.0])
+        .unwrap();
+    assert!(interface.unsettled.is_some());
+    assert!(interface.forces.iter().all(|force| *force >= 0.0));
 }
 
 #[test]

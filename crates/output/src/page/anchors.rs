@@ -8,7 +8,7 @@ pub fn section(line: &str) -> &'static str {
         | "scheme-energy" | "hourglass" => "plot-energy",
         "chatter" => "plot-status",
         "penetration" | "passing" => "plot-gap",
-        "step-in-contact" | "force-error" | "not-finite" => "plot-force",
+        "step-in-contact" | "force-error" | "not-finite" | "clipped-tension" => "plot-force",
         "angular-momentum-residual" => "balances",
         "small-strain-rotation" | "small-strain" => "model",
         line if line.starts_with("small-sliding") => "model",

@@ -171,6 +171,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         newton: (system.is_nonlinear() && zones.is_none()).then(|| newton(results, ending)),
         timings: timings(results, ending),
         warnings: settings.warnings.clone(),
+        notices: totals.notices(),
         outputs: names.filter(there).collect(),
     }
 }

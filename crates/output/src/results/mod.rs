@@ -231,6 +231,7 @@ impl Results {
         let forces: f64 = report.contacts.iter().map(force).sum();
         let finite = (report.balance.energy_residual + forces).is_finite();
         self.totals.not_finite += u64::from(!finite);
+        self.totals.notice(report);
         let point = self.point.as_ref();
         self.loads.push(&self.system, state, report);
         let beside = (point, &self.loads.now[..]);

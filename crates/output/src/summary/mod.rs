@@ -68,8 +68,11 @@ pub struct Summary {
     pub newton: Option<Newton>,
     /// Seconds spent, by the name of the part.
     pub timings: BTreeMap<String, f64>,
-    /// Warnings of the check and of the run.
+    /// Warnings of the check.
     pub warnings: Vec<String>,
+    /// What steps of the run went on after.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notices: Vec<String>,
     /// Files of the results folder, relative to it, but those that `fields.pvd` names.
     pub outputs: Vec<String>,
 }

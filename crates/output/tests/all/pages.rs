@@ -69,6 +69,7 @@ fn sample(verdict: Verdict) -> Summary {
         newton: None,
         timings: BTreeMap::from([("solve".to_owned(), 0.1234)]),
         warnings: vec!["the step is long".to_owned()],
+        notices: Vec::new(),
         outputs: vec!["summary.json".to_owned()],
     }
 }

@@ -16,6 +16,7 @@ mod resolution;
 mod sampling;
 mod scales;
 mod small;
+mod tolerated;
 
 use crate::verdict::Verdict;
 use finding::worst;
@@ -43,6 +44,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     explicit::deleted_cells,
     explicit::loose_nodes,
     chatter::of_contacts,
+    tolerated::tension,
     penetration::of_contacts,
     penetration::of_passing,
     resolution::of_peaks,
