@@ -90,7 +90,7 @@ impl Builder<'_> {
                     }
                 };
                 moved(&mut points);
-                self.tell(name, &points, ("acceleration", "m/s^2"));
+                self.note_signal(name, &points, ("acceleration", "m/s^2"));
                 let record = Record::new(points.points.clone());
                 let record = record.map_err(|error| self.no_function(&error, &points));
                 let record = record.ok()?;
@@ -109,7 +109,7 @@ impl Builder<'_> {
                     }
                 };
                 moved(&mut points);
-                self.tell(name, &points, ("displacement", "m"));
+                self.note_signal(name, &points, ("displacement", "m"));
                 self.straight(&points).map(Course::Displacement)
             }
             (None, None, source) => {
@@ -124,14 +124,14 @@ impl Builder<'_> {
                     }
                 };
                 moved(&mut points);
-                self.tell(name, &points, ("factor", ""));
+                self.note_signal(name, &points, ("factor", ""));
                 self.straight(&points).map(Course::Factor)
             }
         }
     }
 
     /// Notes what a signal has: its largest value with its unit, and how far its points are apart.
-    fn tell(&mut self, name: &str, points: &Points, (what, unit): (&str, &str)) {
+    fn note_signal(&mut self, name: &str, points: &Points, (what, unit): (&str, &str)) {
         let points = &points.points;
         let size = |point: &[f64; 2]| point[1].abs();
         let by_size = |a: &&[f64; 2], b: &&[f64; 2]| size(a).total_cmp(&size(b));
