@@ -449,8 +449,8 @@ impl Ledger {
 
     /// The largest terms so far.
     fn follow(&mut self) {
-        // a spring that pulls at elongation zero has a negative energy beyond
-        let energy = self.balance.kinetic + self.balance.strain.max(0.0);
+        // a spring that pulls at elongation zero has a negative energy where it is shorter
+        let energy = self.balance.kinetic + self.balance.strain.abs();
         self.largest_energy = self.largest_energy.max(energy);
         self.largest_hourglass = self.largest_hourglass.max(self.balance.hourglass);
         self.largest_internal = self.largest_internal.max(self.balance.internal());

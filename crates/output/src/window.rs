@@ -131,7 +131,9 @@ mod tests {
     #[test]
     fn a_step_longer_than_the_window_has_its_own_value_as_mean() {
         let mut mean = PeakOfMean::new(0.1);
-        [0.0, 5.0, 1.0].map(|value| mean.push(1.0, value));
+        for value in [0.0, 5.0, 1.0] {
+            mean.push(1.0, value);
+        }
         assert!((mean.peak() - 5.0).abs() < 1e-12);
     }
 }

@@ -16,7 +16,6 @@ use std::sync::Arc;
 use carom_algebra::rotation::Rotation;
 use carom_contact::law::{Local, Status};
 use carom_contact::{Pairing, Search};
-use carom_nonsmooth::Compliance;
 use serde::{Deserialize, Serialize};
 
 use crate::ending::{GAIN, TOLERANCE, rounding, speed};
@@ -78,8 +77,8 @@ pub(crate) struct Between {
     pub(crate) sizes: Vec<f64>,
     pub(crate) version: u64,
     rates: Vec<f64>,
-    interface: Interface,
-    data: Vec<Candidate>,
+    pub(crate) interface: Interface,
+    pub(crate) data: Vec<Candidate>,
     /// Displacements and velocities of the whole at the start of the step, and at its end.
     start: [Vec<f64>; 2],
     end: [Vec<f64>; 2],
@@ -328,13 +327,7 @@ impl Between {
                 instant: [1.0; 2],
             });
         }
-        let matrix = match self.softened.is_empty() {
-            true => &self.matrix,
-            false => &self.softened,
-        };
-        let problem = (Compliance::Dense(matrix), self.version);
-        let solved = self.interface.solve(&self.data, problem, [0.0, 1.0]);
-        if let Err(failure) = solved {
+        if let Err(failure) = self.solve_softened() {
             let contact = system.point(self.candidates[0] as usize).0.name.clone();
             return Err(Error::Between {
                 step: step + 1,

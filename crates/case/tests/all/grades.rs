@@ -52,8 +52,8 @@ fn bars(part: f64) -> Verdict {
     verdict(&format!(
         r#"
 carom = 1
-mesh.generate.a.line = {{ from = [-1.0], to = [0.0], elements = 10 }}
-mesh.generate.b.line = {{ from = [0.0], to = [1.0], elements = 10 }}
+mesh.generate.a.line = {{ from = [-1.0], to = [0.0], elements = 20 }}
+mesh.generate.b.line = {{ from = [0.0], to = [1.0], elements = 20 }}
 material.m = {{ density = 7800.0, elastic = {{ young = 2e11, poisson = 0.0 }} }}
 body.a = {{ region = "a", material = "m", section.bar.area = 1e-4, initial.velocity = [{speed:?}] }}
 body.b = {{ region = "b", material = "m", section.bar.area = 1e-4 }}

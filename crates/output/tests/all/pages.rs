@@ -215,7 +215,7 @@ fn the_fingerprint_is_fnv_1a() {
     assert_eq!(summary::hash("foobar"), "85944171f73967e8");
 }
 
-fn page(summary: &Summary, impacts: &[ImpactRow], figures: &[String]) -> String {
+fn page_of(summary: &Summary, impacts: &[ImpactRow], figures: &[String]) -> String {
     Report {
         summary,
         impacts,
@@ -232,7 +232,7 @@ fn page(summary: &Summary, impacts: &[ImpactRow], figures: &[String]) -> String 
 #[test]
 fn the_report_says_what_the_summary_says() {
     let figures = ["<svg><!-- one --></svg>".to_owned()];
-    let html = page(&sample(verdict(1e-12)), &[], &figures);
+    let html = page_of(&sample(verdict(1e-12)), &[], &figures);
     for text in [
         "Good: the run is complete",
         "74.6 kN",
@@ -249,7 +249,7 @@ fn the_report_says_what_the_summary_says() {
         assert!(html.contains(text), "{text}");
     }
     assert!(!html.contains("Impacts"), "no table without rows");
-    let bad = page(&sample(verdict(1.0)), &[], &figures);
+    let bad = page_of(&sample(verdict(1.0)), &[], &figures);
     assert!(bad.contains("Not to be relied on") && bad.contains("Remedy: a smaller step"));
     // each line leads to the plot of its quantity
     let line = |grade| format!(">{grade}</b> <a href=\"#plot-residual\">energy residual");
@@ -258,7 +258,7 @@ fn the_report_says_what_the_summary_says() {
 
 #[test]
 fn the_report_without_its_program_runs_nothing_and_asks_for_nothing() {
-    let html = page(&sample(Verdict::default()), &[], &[]);
+    let html = page_of(&sample(Verdict::default()), &[], &[]);
     assert!(!html.contains("<script") && !html.contains("http") && !html.contains("src="));
     assert!(
         html.contains("Bars &lt;script&gt;alert(1)&lt;&#x2f;script&gt; &amp; walls"),
@@ -296,7 +296,7 @@ fn what_does_not_exist_is_a_dash() {
         intervals: 1,
         impulsive: 0.0,
     };
-    let html = page(&sample(Verdict::default()), &[impact], &[]);
+    let html = page_of(&sample(Verdict::default()), &[impact], &[]);
     let row = html
         .lines()
         .find(|line| line.starts_with("<tr><th scope=\"row\">shock</th>"))

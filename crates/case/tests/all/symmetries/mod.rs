@@ -1,7 +1,7 @@
 //! What must not change the answer: the frame of reference, the origin, the axes, the units, the order of names, which side is the
 //! secondary one of equal meshes, and what else is in the room.
 //!
-//! 200 models from seeds ([`model`]): two or three blocks that collide, fall on a plane or on each other, with all laws and some schemes, with and without
+//! 240 models from seeds ([`model`]): one to three blocks that collide, fall on a plane or on each other, with all laws and some schemes, with and without
 //! friction, at small and finite strain. Each is computed as it is and changed, and impulses, largest forces and all grades are
 //! compared.
 //!
@@ -17,8 +17,8 @@ use carom_output::{Grade, Summary};
 use self::model::{Change, Model};
 use crate::verdict::result;
 
-/// Models of a symmetry.
-const MODELS: u64 = 200;
+/// Models of a change: with twelve changes each of 240 models is computed once, as it is and changed.
+const MODELS: u64 = 20;
 
 /// What is compared of a run.
 struct Answer {
@@ -48,10 +48,10 @@ fn grades(summary: &Summary) -> Vec<(String, Grade)> {
     lines.map(|line| (line.name.clone(), line.grade)).collect()
 }
 
-/// Compares all models with their changed ones; `rounding`: of a place, m, with the change.
-fn hold(change: impl Fn(&Model) -> (Change, f64)) {
+/// Compares the models of the `number`-th change with their changed ones; with the change: the size of places, m.
+fn hold(number: u64, change: impl Fn(&Model) -> (Change, f64)) {
     let mut broken = Vec::new();
-    for seed in 0..MODELS {
+    for seed in number * MODELS..(number + 1) * MODELS {
         let model = Model::new(seed);
         let (change, place) = change(&model);
         let (plain, changed) = (
@@ -83,8 +83,8 @@ fn hold(change: impl Fn(&Model) -> (Change, f64)) {
 
 #[test]
 fn a_uniform_velocity_along_what_holds_nothing_changes_no_answer() {
-    for speed in [1.0, 100.0, 1e4] {
-        hold(|model| {
+    for (number, speed) in [(0, 1.0), (1, 100.0), (2, 1e4)] {
+        hold(number, |model| {
             let change = Change {
                 velocity: speed,
                 ..Change::default()
@@ -96,7 +96,7 @@ fn a_uniform_velocity_along_what_holds_nothing_changes_no_answer() {
 
 #[test]
 fn the_distance_of_the_origin_changes_no_answer() {
-    hold(|_| {
+    hold(3, |_| {
         let shift = [1e6, -3e5];
         let change = Change {
             shift,
@@ -108,8 +108,8 @@ fn the_distance_of_the_origin_changes_no_answer() {
 
 #[test]
 fn turned_and_mirrored_axes_change_no_answer() {
-    for (turned, mirrored) in [(true, false), (false, true), (true, true)] {
-        hold(|_| {
+    for (number, turned, mirrored) in [(4, true, false), (5, false, true)] {
+        hold(number, |_| {
             let change = Change {
                 turned,
                 mirrored,
@@ -122,8 +122,8 @@ fn turned_and_mirrored_axes_change_no_answer() {
 
 #[test]
 fn a_bystander_with_a_contact_of_its_own_changes_no_answer() {
-    for bystander in model::BYSTANDERS {
-        hold(|_| {
+    for (number, bystander) in (6..).zip(model::BYSTANDERS) {
+        hold(number, |_| {
             let change = Change {
                 bystander: Some(bystander),
                 ..Change::default()
@@ -135,7 +135,7 @@ fn a_bystander_with_a_contact_of_its_own_changes_no_answer() {
 
 #[test]
 fn the_order_of_bodies_and_contacts_changes_no_answer() {
-    hold(|_| {
+    hold(9, |_| {
         let change = Change {
             reversed: true,
             ..Change::default()
@@ -146,8 +146,8 @@ fn the_order_of_bodies_and_contacts_changes_no_answer() {
 
 #[test]
 fn units_change_no_answer() {
-    for length in [1e-3, 1e3] {
-        hold(|_| {
+    for (number, length) in [(10, 1e-3), (11, 1e3)] {
+        hold(number, |_| {
             let change = Change {
                 length,
                 ..Change::default()
