@@ -11,6 +11,7 @@ mod events;
 mod forged;
 mod general;
 mod grades;
+mod hinged;
 mod large;
 mod losses;
 mod means;
