@@ -3,11 +3,10 @@
 use std::ops::Range;
 
 use carom_algebra::csr::Csr;
-use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
-use crate::beam::{Beam, LargeBeam, Rotations, SectionForces};
+use crate::beam::{Beam, LargeBeam, Rotations};
 use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
 use crate::reduced::Reduced;
@@ -272,22 +271,6 @@ impl Body {
             | Body::Rigid(_)
             | Body::Discrete(_)
             | Body::Reduced(_) => true,
-        }
-    }
-
-    /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies. `frames`, as in
-    /// [`Placement`], and `history`: of this body at `u`.
-    pub fn section_forces(
-        &self,
-        u: &[f64],
-        frames: &[Rotation],
-        history: &[f64],
-    ) -> Option<Vec<SectionForces>> {
-        match self {
-            Body::Beam(beam) => Some(beam.section_forces(u, history)),
-            Body::LargeBeam(beam) => Some(beam.section_forces(frames, u, history)),
-            Body::Reduced(reduced) => reduced.section_forces(u),
-            _ => None,
         }
     }
 

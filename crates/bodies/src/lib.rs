@@ -38,8 +38,8 @@ mod turning;
 mod weights;
 
 pub use beam::{
-    Beam, BeamAxis, BeamSection, BeamTheory, LAYERS, LargeBeam, Rotations, SectionForces,
-    SectionProperties, SectionShape,
+    Beam, BeamAxis, BeamSection, BeamTheory, Extremes, LAYERS, LargeBeam, Rotations, SectionForces,
+    SectionProperties, SectionShape, SectionStress,
 };
 pub use block::by_kind;
 pub use body::Body;

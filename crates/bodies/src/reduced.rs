@@ -16,7 +16,7 @@ use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::ElementId;
 
 use crate::reducible::Reducible;
-use crate::{Placement, SectionForces, Stored};
+use crate::{Placement, SectionForces, SectionStress, Stored};
 
 /// A body and what it is reduced to, in the numbers of the mesh.
 #[derive(Debug)]
@@ -360,6 +360,16 @@ impl Reduced {
     /// Forces and moments in the sections of beams.
     pub(crate) fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
         self.data.full.section_forces(&self.recover(u))
+    }
+
+    /// Whether it is one of beams.
+    pub fn has_sections(&self) -> bool {
+        self.data.full.has_sections()
+    }
+
+    /// The largest stresses in the sections of beams.
+    pub(crate) fn section_stresses(&self, u: &[f64]) -> Option<Vec<SectionStress>> {
+        self.data.full.section_stresses(&self.recover(u))
     }
 
     /// The amplitudes of a uniform motion (m or m/s), and their unknowns.

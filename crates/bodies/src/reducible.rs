@@ -4,7 +4,7 @@ use carom_algebra::tensor::Mat3;
 use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
-use crate::beam::{Beam, SectionForces};
+use crate::beam::{Beam, SectionForces, SectionStress};
 use crate::solid::{BodySpec, Solid};
 use crate::{Error, Kinematics};
 
@@ -73,10 +73,21 @@ impl Reducible {
         }
     }
 
+    pub(crate) fn has_sections(&self) -> bool {
+        matches!(self, Reducible::Beam(_))
+    }
+
     pub(crate) fn section_forces(&self, u: &[f64]) -> Option<Vec<SectionForces>> {
         match self {
             Reducible::Solid(_) => None,
             Reducible::Beam(beam) => Some(beam.section_forces(u, &[])),
+        }
+    }
+
+    pub(crate) fn section_stresses(&self, u: &[f64]) -> Option<Vec<SectionStress>> {
+        match self {
+            Reducible::Solid(_) => None,
+            Reducible::Beam(beam) => Some(beam.section_stresses(u, &[])),
         }
     }
 }

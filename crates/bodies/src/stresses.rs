@@ -1,8 +1,9 @@
-//! Stresses and plastic strains of the elements of a body.
+//! Stresses, forces in sections and plastic strains of the elements of a body.
 
+use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Mat3;
 
-use crate::Body;
+use crate::{Body, SectionForces, SectionStress};
 
 impl Body {
     /// Volume (m³) and mean stress (Pa) of each element, in the order of [`Body::cells`]; see [`Solid::stresses`](crate::Solid::stresses).
@@ -24,6 +25,38 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.stresses_of(element..element + 1, (u, history)).pop(),
             _ => self.stresses(u, history).get(element).copied(),
+        }
+    }
+
+    /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies. `frames`, as in
+    /// [`Placement`], and `history`: of this body at `u`.
+    pub fn section_forces(
+        &self,
+        u: &[f64],
+        frames: &[Rotation],
+        history: &[f64],
+    ) -> Option<Vec<SectionForces>> {
+        match self {
+            Body::Beam(beam) => Some(beam.section_forces(u, history)),
+            Body::LargeBeam(beam) => Some(beam.section_forces(frames, u, history)),
+            Body::Reduced(reduced) => reduced.section_forces(u),
+            _ => None,
+        }
+    }
+
+    /// The largest stresses in the sections of each element of beams, as [`Body::section_forces`]; none of other bodies. They are no
+    /// numbers where neither the shape nor the extreme fibres of the section are known.
+    pub fn section_stresses(
+        &self,
+        u: &[f64],
+        frames: &[Rotation],
+        history: &[f64],
+    ) -> Option<Vec<SectionStress>> {
+        match self {
+            Body::Beam(beam) => Some(beam.section_stresses(u, history)),
+            Body::LargeBeam(beam) => Some(beam.section_stresses(frames, u, history)),
+            Body::Reduced(reduced) => reduced.section_stresses(u),
+            _ => None,
         }
     }
 

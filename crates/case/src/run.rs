@@ -210,6 +210,7 @@ pub(crate) fn settings(
                     name: probe.name.clone(),
                     nodes: probe.nodes.clone(),
                     cell: probe.cell,
+                    section: probe.section,
                     displacement: has(Motion::Displacement),
                     velocity: has(Motion::Velocity),
                     acceleration: has(Motion::Acceleration),

@@ -60,4 +60,7 @@ pub enum Error {
     /// The body by itself could not be built.
     #[error(transparent)]
     System(#[from] carom_system::Error),
+    /// A stiffness that could not be computed.
+    #[error(transparent)]
+    Body(#[from] carom_bodies::Error),
 }

@@ -78,7 +78,7 @@ impl Full {
         border.iter().for_each(|&unknown| fixed[unknown] = false);
         Ok(Full {
             name: given.spec.name.clone(),
-            matrices: Matrices::new(&system),
+            matrices: Matrices::new(&system)?,
             system,
             fixed,
             border,

@@ -6,9 +6,13 @@ use carom_algebra::csr::Csr;
 use carom_algebra::eigen::Problem;
 use carom_algebra::pattern::Cliques;
 use carom_algebra::solver::SparseRow;
+use carom_bodies::Placement;
 use carom_system::{System, push_cliques};
 
-/// Stiffness and mass of all bodies, about the undeformed state, over all unknowns of a system.
+use crate::error::Error;
+
+/// Stiffness and mass of all bodies over all unknowns of a system: the stiffness about the undeformed state, of beams and shells with finite rotations
+/// the tangent there.
 #[derive(Debug)]
 pub struct Matrices {
     /// K, N/m.
@@ -19,7 +23,10 @@ pub struct Matrices {
 
 impl Matrices {
     /// Assembles both.
-    pub fn new(system: &System) -> Matrices {
+    ///
+    /// # Errors
+    /// A body without a tangent.
+    pub fn new(system: &System) -> Result<Matrices, Error> {
         let all = 0..system.unknowns();
         let mut cliques = Cliques::new();
         for body in &system.bodies {
@@ -27,11 +34,25 @@ impl Matrices {
         }
         let mut stiffness = Csr::from_cliques(all.len(), &cliques);
         let mut mass = stiffness.clone();
-        for body in &system.bodies {
-            body.assemble([1.0, 0.0, 0.0], &all, &mut stiffness);
+        let (rest, histories) = (vec![0.0; all.len()], system.start_histories());
+        for (number, body) in system.bodies.iter().enumerate() {
+            match body.bends_finitely() {
+                false => body.assemble([1.0, 0.0, 0.0], &all, &mut stiffness),
+                true => {
+                    let at = Placement {
+                        u: &rest,
+                        v: &rest,
+                        from: None,
+                        frames: &system.initial_frames,
+                        dt: system.dt,
+                        old: system.history(number, &histories),
+                    };
+                    body.add_tangent(&at, [1.0, 0.0], &mut stiffness)?;
+                }
+            }
         }
         system.mass.add_to(1.0, &all, 0, &mut mass);
-        Matrices { stiffness, mass }
+        Ok(Matrices { stiffness, mass })
     }
 }
 

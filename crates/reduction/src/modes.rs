@@ -163,7 +163,7 @@ pub fn modes(
     count: usize,
     told: &mut dyn FnMut(usize, usize),
 ) -> Result<Vec<Modes>, Error> {
-    let matrices = Matrices::new(system);
+    let matrices = Matrices::new(system)?;
     let groups = groups(system);
     let mut all = Vec::with_capacity(groups.len());
     for (number, group) in groups.iter().enumerate() {

@@ -249,11 +249,14 @@ impl System {
     /// (both s): the end, or of schemes whose state has no acceleration the instant of their balance. The sum of both is the
     /// absolute acceleration, m/s².
     pub fn frame_acceleration(&self, time: f64, dt: f64) -> [f64; 3] {
-        let scheme = self.scheme.get();
-        match scheme.keeps_acceleration() || dt == 0.0 {
-            true => self.base_acceleration(time),
-            false => self.base_acceleration(time - dt + scheme.step_map(dt).instant(dt)),
-        }
+        self.base_acceleration(instant(&self.scheme, time, dt))
+    }
+
+    /// The instant to which the acceleration of an unknown belongs after such a step, s.
+    pub fn instant_of(&self, unknown: usize, time: f64, dt: f64) -> f64 {
+        let span = self.spans.partition_point(|(span, _)| span.end <= unknown);
+        let zone = self.spans.get(span).map_or(0, |(_, zone)| *zone);
+        instant(self.schemes.get(zone).unwrap_or(&self.scheme), time, dt)
     }
 
     /// As [`Model::is_nonlinear`](crate::Model::is_nonlinear).
@@ -289,4 +292,13 @@ impl System {
 /// The connected part of an unknown.
 pub(crate) fn part_of(parts: &[Range<usize>], unknown: usize) -> usize {
     parts.partition_point(|part| part.end <= unknown)
+}
+
+/// The instant to which the accelerations of this scheme belong after a step of `dt` that ends at `time`, s.
+fn instant(scheme: &Scheme, time: f64, dt: f64) -> f64 {
+    let scheme = scheme.get();
+    match scheme.keeps_acceleration() || dt == 0.0 {
+        true => time,
+        false => time - dt + scheme.step_map(dt).instant(dt),
+    }
 }

@@ -140,9 +140,10 @@ fn foundation(elements: usize) -> Result<Vec<Row>, Error> {
 }
 
 fn added_mass(elements: usize) -> Result<Vec<Row>, Error> {
-    let fluid = FluidGap::around(1000.0, [0.5 * DIAMETER, 0.8 * DIAMETER]);
+    let [fluid, displaced] = FluidGap::around(1000.0, [0.5 * DIAMETER, 0.8 * DIAMETER]);
     let section = BeamSection {
         added_mass: fluid,
+        displaced_mass: displaced,
         ..rod(DIAMETER, BeamTheory::EulerBernoulli)
     };
     let [bending, mass] = of(&section);
@@ -162,9 +163,9 @@ fn added_mass(elements: usize) -> Result<Vec<Row>, Error> {
             .sum()
     };
     rows.push(Row::relative(
-        "added mass: weight, N",
+        "added mass: weight less buoyancy, N",
         weight,
-        -10.0 * mass,
+        -10.0 * (mass - displaced),
         1e-12,
     ));
     Ok(rows)

@@ -191,7 +191,7 @@ fn frequencies(model: &Model, count: usize) -> Result<Vec<f64>, Error> {
 /// The displacement of the node of the stop under a unit force on it, m/N.
 fn flexibility(problem: &Problem, model: &Model) -> Result<f64, Error> {
     let system = System::whole(model.clone())?;
-    let stiffness = Matrices::new(&system).stiffness;
+    let stiffness = Matrices::new(&system)?.stiffness;
     let held = stiffness.with_identity(&system.fixed);
     let unknown = system.unknowns.first(system.number[problem.node as usize]) + problem.axis;
     let mut x = vec![0.0; system.unknowns()];

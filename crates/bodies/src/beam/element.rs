@@ -371,9 +371,15 @@ impl Element<'_> {
             }
             .mass(),
         );
+        let BeamSection {
+            added_mass,
+            displaced_mass,
+            ..
+        } = self.section;
+        let factor = 1.0 + displaced_mass / added_mass;
         for (row, dry) in mass.iter_mut().zip(dry) {
             for (m, dry) in row.iter_mut().zip(dry) {
-                *m -= dry;
+                *m = factor * (*m - dry);
             }
         }
         mass

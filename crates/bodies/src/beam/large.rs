@@ -30,7 +30,7 @@ use carom_algebra::unknowns::Unknowns;
 use super::element::EndWeights;
 use super::section::BeamTheory;
 use super::strain::{Elastic, Invariants, Matrix6, Pair};
-use super::{Beam, SectionForces};
+use super::{Beam, SectionForces, SectionStress};
 use crate::flowing::{FibreSection, Flowing};
 use crate::turning::{balanced, spatial};
 use crate::{Error, Placement, Stored};
@@ -481,8 +481,8 @@ impl LargeBeam {
         (0..self.elements.len()).map(of).collect()
     }
 
-    /// Forces and moments in the sections at these rotations and displacements, in the axes in the middle of each element. `history`: of
-    /// this body there.
+    /// Forces in the sections and moments at their ends at these rotations and displacements, in the axes in the middle of each element.
+    /// `history`: of this body there.
     pub(crate) fn section_forces(
         &self,
         frames: &[Rotation],
@@ -504,13 +504,44 @@ impl LargeBeam {
                     elastic.stresses_with(&strains, &flowing)
                 }
             };
-            let moment = [f[3], f[4], f[5]];
+            let (force, moment) = (Vec3::new(f[0], f[1], f[2]), Vec3::new(f[3], f[4], f[5]));
+            // m' + x' × n = 0 from the middle to the ends
+            let [stretch, along_y, along_z, ..] = elastic.strains(&s);
+            let half = Vec3::new(1.0 + stretch, along_y, along_z) * (0.5 * elastic.length);
+            let lever = half.cross(&force);
             SectionForces {
-                force: [f[0], f[1], f[2]],
-                moment_first: moment,
-                moment_second: moment,
+                force: force.into(),
+                moment_first: (moment + lever).into(),
+                moment_second: (moment - lever).into(),
             }
         };
         (0..self.elements.len()).map(of).collect()
+    }
+
+    /// See [`Body::section_stresses`](crate::Body::section_stresses).
+    pub(crate) fn section_stresses(
+        &self,
+        frames: &[Rotation],
+        u: &[f64],
+        history: &[f64],
+    ) -> Vec<SectionStress> {
+        let Some(places) = &self.small.places else {
+            return vec![SectionStress::unknown(); self.elements.len()];
+        };
+        let of = |(element, forces): (usize, SectionForces)| {
+            let Some(section) = &self.section else {
+                return places.stress(&forces);
+            };
+            let history = &history[self.history_of(section, element)];
+            if section.plastic_strain(history) == 0.0 {
+                return places.stress(&forces);
+            }
+            let s = self.invariants(element, &self.ends(element, frames, u));
+            let strains = Elastic::flowing(&self.elements[element].strains(&s));
+            let fibre = |_, at| section.stress(&strains, at, history);
+            places.flowed(&forces, (1, &fibre))
+        };
+        let all = self.section_forces(frames, u, history).into_iter();
+        all.enumerate().map(of).collect()
     }
 }

@@ -8,6 +8,7 @@ mod axis;
 mod checks;
 mod condensation;
 mod element;
+mod extremes;
 mod fibres;
 mod flow;
 mod large;
@@ -24,6 +25,7 @@ use carom_materials::{Elastic, Plane};
 use carom_mesh::{ElementId, Mesh};
 
 pub use self::axis::BeamAxis;
+pub use self::extremes::{Extremes, SectionStress};
 pub use self::large::LargeBeam;
 pub use self::section::{
     BeamSection, BeamTheory, LAYERS, Rotations, SectionProperties, SectionShape,
@@ -31,6 +33,7 @@ pub use self::section::{
 
 use self::checks::{check, end_weights};
 use self::element::{Element, EndWeights, Matrix};
+use self::extremes::Places;
 use crate::discrete::VisitRow;
 use crate::flowing::Flowing;
 use crate::release::Release;
@@ -80,6 +83,8 @@ pub struct Beam {
     released: Vec<[bool; 12]>,
     /// Extension and bending of metal that flows.
     flowing: Option<Flowing>,
+    /// Where its sections have their largest stresses; none where that is not known.
+    places: Option<Places>,
 }
 
 impl Beam {
@@ -100,6 +105,7 @@ impl Beam {
         check(mesh, &spec)?;
         let mut beam = Beam {
             weights: end_weights(mesh, &spec)?,
+            places: Places::new(&section),
             section,
             material: spec.material.initial(),
             dim: mesh.dim,
@@ -227,7 +233,8 @@ impl Beam {
         }
     }
 
-    /// Adds the mass of the fluid, consistent, to a matrix over all unknowns.
+    /// Adds what has no weight, the mass of the fluid and the mass that it displaces, consistent, to a matrix over all unknowns. It is for uniform
+    /// accelerations.
     pub fn add_fluid_mass(&self, matrix: &mut Csr) {
         for element in 0..self.nodes.len() {
             let local = self.kept(element, self.element(element).fluid_mass());
@@ -236,11 +243,12 @@ impl Beam {
         }
     }
 
-    /// Adds the diagonal of the lumped mass of the fluid.
+    /// Adds the diagonal of [`Beam::add_fluid_mass`] of a lumped mass.
     pub fn add_lumped_fluid(&self, mass: &mut [f64]) {
         let n = 2 * self.per_node();
         for element in 0..self.nodes.len() {
-            let half = 0.5 * self.section.added_mass * self.lengths[element];
+            let fluid = self.section.added_mass + self.section.displaced_mass;
+            let half = 0.5 * fluid * self.lengths[element];
             let mut local = [[0.0; 12]; 12];
             for i in [1, 2, 7, 8] {
                 local[i][i] = half;

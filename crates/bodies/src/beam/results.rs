@@ -2,7 +2,8 @@
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
-use super::{Beam, SectionForces, unit};
+use super::fibres::GAUSS;
+use super::{Beam, SectionForces, SectionStress, unit};
 use crate::distortion::{Distortion, Extreme};
 
 impl Beam {
@@ -45,6 +46,23 @@ impl Beam {
             }
         };
         (0..self.nodes.len()).map(of).collect()
+    }
+
+    /// See [`Body::section_stresses`](crate::Body::section_stresses).
+    pub(crate) fn section_stresses(&self, u: &[f64], history: &[f64]) -> Vec<SectionStress> {
+        let Some(places) = &self.places else {
+            return vec![SectionStress::unknown(); self.nodes.len()];
+        };
+        let flowed = self.plastic_strains(history);
+        let of = |(element, forces): (usize, SectionForces)| match (&self.flowing, &flowed) {
+            (Some(flowing), Some(strains)) if strains[element] > 0.0 => {
+                let fibre = |section, at| flowing.stress((element, section), at, (u, history));
+                places.flowed(&forces, (GAUSS.len(), &fibre))
+            }
+            _ => places.stress(&forces),
+        };
+        let all = self.section_forces(u, history).into_iter().enumerate();
+        all.map(of).collect()
     }
 
     /// The twelve unknowns of an element in its own axes, at the centroid.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use super::extremes::Extremes;
+
 /// Layers of fibres where nothing else is said.
 pub const LAYERS: u32 = 8;
 
@@ -153,6 +155,8 @@ pub struct BeamSection {
     pub properties: SectionProperties,
     /// Its shape, where it is known: what flows is divided into fibres.
     pub shape: Option<SectionShape>,
+    /// Where it has its largest stresses, of a section without a shape.
+    pub extremes: Option<Extremes>,
     /// Layers of fibres over the height and over the width, an even number.
     pub layers: u32,
     /// A vector whose part normal to the axis is the local y, in space; none where it does not matter. In the plane y is z × x.
@@ -165,6 +169,8 @@ pub struct BeamSection {
     pub foundation: [f64; 3],
     /// Mass of a fluid that moves with the section across its axis, kg/m.
     pub added_mass: f64,
+    /// Mass of that fluid that the section displaces, kg/m: the buoyancy under an acceleration of the fluid as a whole.
+    pub displaced_mass: f64,
     /// How far its nodes turn.
     pub rotations: Rotations,
 }
@@ -186,12 +192,14 @@ impl BeamSection {
             theory,
             properties,
             shape: None,
+            extremes: None,
             layers: LAYERS,
             orientation: None,
             offset: [0.0; 2],
             radius: None,
             foundation: [0.0; 3],
             added_mass: 0.0,
+            displaced_mass: 0.0,
             rotations: Rotations::Small,
         }
     }

@@ -28,9 +28,11 @@ impl FluidGap {
         }
     }
 
-    /// Added mass per length (kg/m) of a cylinder in a shell that does not move.
-    pub fn around(density: f64, radii: [f64; 2]) -> f64 {
-        FluidGap::new(density, radii, 1.0).masses[0]
+    /// Per length of a cylinder in a shell that does not move, kg/m: the added mass M_H, and the mass M₁ that it displaces, with which a common
+    /// acceleration acts on it.
+    pub fn around(density: f64, radii: [f64; 2]) -> [f64; 2] {
+        let [moved, between, _] = FluidGap::new(density, radii, 1.0).masses;
+        [moved, -between - moved]
     }
 
     /// Visits the entries of the mass over the translations of two nodes, which begin at these unknowns.

@@ -16,6 +16,10 @@ use crate::Kinematics;
 /// axisymmetry. The thickness of plane stress and the section of a bar are the reference ones; the end of a bar is pushed
 /// along its reference axis.
 ///
+/// **Over a step** it is the mean of these forces on the straight way between two displacements: a discrete gradient, whose work on a closed surface is
+/// p times the loss of volume. Forces are polynomials of second degree of the displacement at most, of which two points of Gauss's rule on the way are the
+/// exact mean.
+///
 /// Wriggers (2008), Nonlinear Finite Element Methods, chapter on deformation-dependent loads.
 #[derive(Clone, Debug)]
 pub struct FollowerPressure {
@@ -34,6 +38,36 @@ struct Loaded {
     /// Reference positions in m.
     x: Vec<[f64; 3]>,
     axis: [f64; 3],
+}
+
+/// The points of Gauss on [0, 1], each of weight 1/2.
+const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+
+/// Displacements: one, or a part of the way from another one to it.
+#[derive(Clone, Copy)]
+struct Way<'a> {
+    from: &'a [f64],
+    to: &'a [f64],
+    part: f64,
+}
+
+impl Way<'_> {
+    /// The displacement itself, m.
+    fn end(u: &[f64]) -> Way<'_> {
+        Way {
+            from: u,
+            to: u,
+            part: 1.0,
+        }
+    }
+
+    fn at(&self, unknown: usize) -> f64 {
+        let (from, to) = (self.from[unknown], self.to[unknown]);
+        match self.part == 1.0 {
+            true => to,
+            false => from + self.part * (to - from),
+        }
+    }
 }
 
 /// One integration point of a face.
@@ -78,6 +112,17 @@ impl FollowerPressure {
 
     /// Adds the forces (N) of the pressure `p` (Pa) at the displacement `u` (m) to the system vector `f` of external forces.
     pub fn add_force(&self, p: f64, u: &[f64], f: &mut [f64]) {
+        self.add_force_at(p, Way::end(u), f);
+    }
+
+    /// Adds the mean of these forces on the way from one displacement to another.
+    pub fn add_mean_force(&self, p: f64, [from, to]: [&[f64]; 2], f: &mut [f64]) {
+        for part in GAUSS {
+            self.add_force_at(0.5 * p, Way { from, to, part }, f);
+        }
+    }
+
+    fn add_force_at(&self, p: f64, u: Way, f: &mut [f64]) {
         let dim = self.dim;
         for face in &self.faces {
             if face.kind == Kind::Point1 {
@@ -104,15 +149,25 @@ impl FollowerPressure {
     /// ∂f/∂u of a uniform pressure is symmetric but for terms on the border of the loaded surface, which vanish where it is
     /// closed or ends on a symmetry plane or the axis.
     pub fn add_tangent(&self, p: f64, u: &[f64], factor: f64, matrix: &mut Csr) {
+        self.add_tangent_at(p * factor, Way::end(u), matrix);
+    }
+
+    /// Adds `factor` times the derivative of the forces of [`FollowerPressure::add_mean_force`] by the second displacement.
+    pub fn add_mean_tangent(&self, p: f64, [from, to]: [&[f64]; 2], factor: f64, matrix: &mut Csr) {
+        for part in GAUSS {
+            let way = Way { from, to, part };
+            self.add_tangent_at(0.5 * part * p * factor, way, matrix);
+        }
+    }
+
+    fn add_tangent_at(&self, p: f64, u: Way, matrix: &mut Csr) {
         let dim = self.dim;
         let (mut unknowns, mut block) = (Vec::new(), Vec::new());
         for face in self.faces.iter().filter(|face| face.kind != Kind::Point1) {
             let n = dim * face.first.len();
             block.clear();
             block.resize(n * n, 0.0);
-            self.each_point(face, u, &mut |point| {
-                self.add_point(p * factor, point, &mut block)
-            });
+            self.each_point(face, u, &mut |point| self.add_point(p, point, &mut block));
             unknowns.clear();
             let of_node = |&first: &u32| first..first + dim as u32;
             unknowns.extend(face.first.iter().flat_map(of_node));
@@ -165,12 +220,12 @@ impl FollowerPressure {
         change
     }
 
-    fn each_point(&self, face: &Loaded, u: &[f64], visit: &mut dyn FnMut(&Point)) {
+    fn each_point(&self, face: &Loaded, u: Way, visit: &mut dyn FnMut(&Point)) {
         let table = face.kind.table();
         let mut x = face.x.clone();
         for (x, &first) in x.iter_mut().zip(&face.first) {
-            let u = &u[first as usize..][..self.dim];
-            x.iter_mut().zip(u).for_each(|(x, u)| *x += u);
+            let unknowns = first as usize..first as usize + self.dim;
+            x.iter_mut().zip(unknowns).for_each(|(x, i)| *x += u.at(i));
         }
         let (mut n, mut dn) = ([0.0; MAX_NODES], [[0.0; 3]; MAX_NODES]);
         let (n, dn) = (&mut n[..table.nodes], &mut dn[..table.nodes]);

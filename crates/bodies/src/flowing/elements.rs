@@ -182,6 +182,19 @@ impl Flowing {
         self.section.forces(&strains, self.history(number, all))
     }
 
+    /// Normal stress at a place of the section at a point of an element in the history of all, that at `u`, Pa.
+    pub(crate) fn stress(
+        &self,
+        (element, point): (usize, usize),
+        place: [f64; 2],
+        (u, all): (&[f64], &[f64]),
+    ) -> f64 {
+        let number = self.per * element + point;
+        let strains = self.strains(&self.points[number], &self.values(element, u));
+        self.section
+            .stress(&strains, place, self.history(number, all))
+    }
+
     /// Mean stress of an element in the history of all, that at `u`, Pa.
     pub(crate) fn mean_stress(&self, element: usize, (u, all): (&[f64], &[f64])) -> f64 {
         let own = self.values(element, u);

@@ -121,6 +121,27 @@ impl FibreSection {
         forces
     }
 
+    /// Normal stress at a place of the section, Pa: that of the nearest fibre, and where this has not flowed that of the place itself.
+    pub(crate) fn stress(&self, strains: &Strains, place: [f64; 2], history: &[f64]) -> f64 {
+        let distance = |fibre: &Fibre| {
+            let [y, z] = fibre.place;
+            (y - place[0]).powi(2) + (z - place[1]).powi(2)
+        };
+        let fibres = self.fibres.iter().zip(history.chunks_exact(self.kept));
+        let nearest = fibres.min_by(|(a, _), (b, _)| distance(a).total_cmp(&distance(b)));
+        nearest.map_or(0.0, |(fibre, history)| {
+            let at = match self.law.plastic_strain(history) > 0.0 {
+                true => fibre.place,
+                false => place,
+            };
+            let here = Fibre {
+                place: at,
+                area: 0.0,
+            };
+            self.law.young() * (here.strain(strains) - history[0])
+        })
+    }
+
     /// Mean stress over the section at a strain of its axis, Pa; curvatures do not change it.
     pub(crate) fn mean_stress(&self, strain: f64, history: &[f64]) -> f64 {
         let histories = history.chunks_exact(self.kept);

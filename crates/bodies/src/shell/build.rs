@@ -50,6 +50,7 @@ impl Shell {
             name: spec.name.clone(),
             section,
             faces: through.faces(),
+            borders: through.borders(),
             wave_speed: through.wave_speed(),
             cells: spec.cells.clone(),
             elements: Vec::new(),

@@ -195,11 +195,24 @@ impl Layers {
         history: &[f64],
     ) -> [[f64; 3]; 2] {
         let last = self.stations.len() - 1;
-        [last, 0].map(|k| {
-            let (own, station) = (&history[self.kept * k..], self.stations[k]);
-            let strain = Layers::strain(of, station.height * thickness);
-            self.laws[station.law].stress(&strain, own)
-        })
+        [last, 0].map(|k| self.stress(k, (of, thickness), history))
+    }
+
+    /// Number of points through the thickness.
+    pub(super) fn stations(&self) -> usize {
+        self.stations.len()
+    }
+
+    /// Stress at one of them, from the side against which the normal points.
+    pub(super) fn stress(
+        &self,
+        number: usize,
+        (of, thickness): (&AtPoint, f64),
+        history: &[f64],
+    ) -> [f64; 3] {
+        let (own, station) = (&history[self.kept * number..], self.stations[number]);
+        let strain = Layers::strain(of, station.height * thickness);
+        self.laws[station.law].stress(&strain, own)
     }
 
     /// Largest equivalent plastic strain.

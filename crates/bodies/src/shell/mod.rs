@@ -53,6 +53,8 @@ pub struct Shell {
     section: ShellSection,
     /// Undeformed materials at its faces, that to which the normal points first.
     faces: [Elastic; 2],
+    /// Undeformed materials on both sides of where plies meet, and the height above the middle over the thickness.
+    borders: Vec<(Elastic, f64)>,
     /// Speed of membrane waves, m/s.
     wave_speed: f64,
     cells: Vec<ElementId>,

@@ -22,6 +22,9 @@ pub struct Resultants {
     pub shear: [f64; 3],
     /// Stress in the plane of the shell at its faces, Pa, that to which the normal points first; of metals that flow at the outermost points.
     pub faces: [Mat3; 2],
+    /// The largest equivalent stress of von Mises between the faces, Pa: where plies meet, and at the points of metals that flow; zero in a section of
+    /// one elastic material, which has its largest stress at a face.
+    pub between: f64,
 }
 
 impl Shell {
@@ -55,7 +58,9 @@ impl Shell {
                 bending: Mat3::zeros(),
                 shear: [0.0; 3],
                 faces: [Mat3::zeros(); 2],
+                between: 0.0,
             };
+            let mut between = vec![0.0; self.stations()];
             let form = &element.form;
             let whole: f64 = form.areas.iter().sum();
             for (point, area) in form.areas.iter().enumerate() {
@@ -63,7 +68,12 @@ impl Shell {
                 let (forces, faces) = match &self.layers {
                     None => {
                         let forces = element.sections[point].forces(strain);
-                        (forces, self.at_faces(strain, element.thickness[point]))
+                        let thickness = element.thickness[point];
+                        for (sum, (material, height)) in between.iter_mut().zip(&self.borders) {
+                            let stress = in_plane(material, strain, height * thickness);
+                            *sum += von_mises(&stress) * form.areas[point] / whole;
+                        }
+                        (forces, self.at_faces(strain, thickness))
                     }
                     Some(layers) => {
                         let own = &history[self.history_of(all.len())];
@@ -71,6 +81,10 @@ impl Shell {
                         let own = &own[kept * point..kept * (point + 1)];
                         let of = (strain, element.thickness[point]);
                         let forces = element.beside(point, strain, &layers.forces(of, own));
+                        for (sum, station) in between.iter_mut().zip(0..) {
+                            let stress = layers.stress(station, of, own);
+                            *sum += von_mises(&stress) * form.areas[point] / whole;
+                        }
                         (forces, layers.outermost(of, own))
                     }
                 };
@@ -83,6 +97,7 @@ impl Shell {
                     *mean += in_space(&tangents, stress, 0) * part;
                 }
             }
+            mean.between = between.into_iter().fold(0.0, f64::max);
             all.push(mean);
         });
         all
@@ -90,17 +105,17 @@ impl Shell {
 
     /// Stresses at both faces of an elastic section, C (e ± h/2 κ) with C of the material there.
     fn at_faces(&self, strain: &AtPoint, thickness: f64) -> [[f64; 3]; 2] {
-        let of = |(material, z): (&Elastic, f64)| {
-            let [x, y, xy] = [0, 1, 2].map(|i| strain[i] + z * strain[3 + i]);
-            let plane = material.young / (1.0 - material.poisson.powi(2));
-            [
-                plane * (x + material.poisson * y),
-                plane * (y + material.poisson * x),
-                material.shear_modulus() * xy,
-            ]
-        };
         let [top, bottom] = &self.faces;
-        [of((top, 0.5 * thickness)), of((bottom, -0.5 * thickness))]
+        let half = 0.5 * thickness;
+        [in_plane(top, strain, half), in_plane(bottom, strain, -half)]
+    }
+
+    /// Number of places between the faces at which stresses are looked at.
+    fn stations(&self) -> usize {
+        match &self.layers {
+            None => self.borders.len(),
+            Some(layers) => layers.stations(),
+        }
     }
 
     /// Volume (m³) and mean stress (Pa) of each element: the membrane forces over the thickness. Bending has no mean.
@@ -138,6 +153,22 @@ impl Shell {
         });
         Some(found)
     }
+}
+
+/// Stress of an elastic material at the height z above the middle, C (e + z κ), Pa.
+fn in_plane(material: &Elastic, strain: &AtPoint, z: f64) -> [f64; 3] {
+    let [x, y, xy] = [0, 1, 2].map(|i| strain[i] + z * strain[3 + i]);
+    let plane = material.young / (1.0 - material.poisson.powi(2));
+    [
+        plane * (x + material.poisson * y),
+        plane * (y + material.poisson * x),
+        material.shear_modulus() * xy,
+    ]
+}
+
+/// Equivalent stress of von Mises of a plane stress, Pa.
+fn von_mises([x, y, xy]: &[f64; 3]) -> f64 {
+    (x * x - x * y + y * y + 3.0 * xy * xy).sqrt()
 }
 
 /// Σ f_ij g_i ⊗ g_j of three numbers from `from` on.

@@ -52,7 +52,7 @@ pub struct Ply {
 }
 
 /// Plies from the side against which the normal points: the undeformed material of each, and its lower and upper height above the middle, m.
-fn heights(plies: &[Ply]) -> Vec<(Elastic, [f64; 2])> {
+pub(super) fn heights(plies: &[Ply]) -> Vec<(Elastic, [f64; 2])> {
     let whole: f64 = plies.iter().map(|ply| ply.thickness).sum();
     let mut below = -0.5 * whole;
     let of = |ply: &Ply| {

@@ -7,7 +7,7 @@ use super::element::Element;
 use super::layers::Layers;
 use super::products::{Configuration, MOST};
 use super::section::ShellSection;
-use super::section::{ElasticSection, Inertia, Ply};
+use super::section::{ElasticSection, Inertia, Ply, heights};
 use super::shares::PointWeights;
 use super::strain::Form;
 use crate::solid::BodySpec;
@@ -38,6 +38,17 @@ impl Through<'_> {
         let own = &self.spec.material;
         let plies = &self.spec.plies;
         [plies.last(), plies.first()].map(|ply| ply.map_or(own, |ply| &ply.material).initial())
+    }
+
+    /// Undeformed materials on both sides of where plies meet, and the height above the middle over the thickness.
+    pub(super) fn borders(&self) -> Vec<(Elastic, f64)> {
+        let plies = heights(&self.spec.plies);
+        let meets = plies.windows(2).flat_map(|pair| {
+            let (below, above) = (&pair[0], &pair[1]);
+            let height = above.1[0] / self.section.thickness;
+            [(below.0, height), (above.0, height)]
+        });
+        meets.collect()
     }
 
     /// Speed of membrane waves, m/s.

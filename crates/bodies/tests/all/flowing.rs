@@ -259,12 +259,13 @@ fn section_forces_balance_the_forces_at_the_nodes_and_the_known_history_gives_th
         let size = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let at_node = size(&last[..dim]);
         assert!((size(&forces[1].force) / at_node - 1.0).abs() < 1e-10);
+        let moment = size(&last[dim..]);
+        // moments of the increments of finite rotations differ from those in space by these, 8e-3
+        let part = if sample.is_large() { 2e-2 } else { 1e-10 };
+        assert!((size(&forces[1].moment_second) / moment - 1.0).abs() < part);
         if sample.is_large() {
-            // those of the middle of the element
             continue;
         }
-        let moment = size(&last[dim..]);
-        assert!((size(&forces[1].moment_second) / moment - 1.0).abs() < 1e-10);
         for (stress, forces) in body.stresses(&u, &new).iter().zip(&forces) {
             let mean = forces.force[0] / section.properties.area;
             assert!((stress.1.trace() - mean).abs() < 1e-9 * mean.abs());

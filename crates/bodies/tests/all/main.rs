@@ -19,6 +19,7 @@ mod patch;
 mod quadratic;
 mod refusals;
 mod sample;
+mod section_stresses;
 mod share;
 mod shells;
 mod sizes;

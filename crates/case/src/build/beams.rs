@@ -1,7 +1,7 @@
 //! Beams: sections from shapes and properties, and what beams refuse.
 
 use carom_bodies::{
-    BeamSection, BeamTheory, BodySpec, Kinematics, LAYERS, Rotations, SectionProperties,
+    BeamSection, BeamTheory, BodySpec, Extremes, Kinematics, LAYERS, Rotations, SectionProperties,
     SectionShape,
 };
 use carom_materials::Law;
@@ -90,15 +90,23 @@ impl Builder<'_> {
             BeamShape::Tube(tube) => Some(tube.diameter.0),
             _ => None,
         };
+        let extremes = match &given.shape {
+            BeamShape::Properties(given) => self.extremes(mesh, &path, given)?,
+            _ => None,
+        };
+        let fluid = self.added_mass(&path, given.added_mass, diameter)?;
+        let [added_mass, displaced_mass] = fluid;
         let round = shape.ok().and_then(|shape| shape.radius(mesh.dim));
         Some(Kinematics::Beam(BeamSection {
             shape: shape.ok(),
+            extremes,
             layers,
             orientation,
             offset,
             radius: given.radius.map(|radius| radius.0).or(round),
             foundation: self.foundation(mesh, &path, given.foundation)?,
-            added_mass: self.added_mass(&path, given.added_mass, diameter)?,
+            added_mass,
+            displaced_mass,
             rotations: match given.rotations {
                 schema::Rotations::Small => Rotations::Small,
                 schema::Rotations::Finite => Rotations::Finite,
@@ -201,6 +209,36 @@ impl Builder<'_> {
             torsion: given.torsion.map_or(z, |torsion| torsion.0),
             shear_areas: [along_y, given.shear_area_z.map_or(along_y, |area| area.0)],
         })
+    }
+
+    /// Where a section given by its properties has its largest stresses; `Some(None)`: not known.
+    fn extremes(
+        &mut self,
+        mesh: &Mesh,
+        path: &str,
+        given: &schema::SectionProperties,
+    ) -> Option<Option<Extremes>> {
+        let own = [given.extreme_y, given.extreme_z].map(|extreme| extreme.map(|c| c.0));
+        let torsion = given.torsion_distance.map(|r| r.0);
+        let fibres = match (own, mesh.dim) {
+            ([Some(y), Some(z)], _) => [y, z],
+            ([Some(y), None], 2) => [y, 0.0],
+            ([None, None], _) if torsion.is_none() => return Some(None),
+            ([y, _], _) => {
+                let missing = if y.is_none() {
+                    "extreme-y"
+                } else {
+                    "extreme-z"
+                };
+                let message =
+                    "stresses of bending need the distances of the extreme fibres along both axes";
+                let problem = Problem::new(format!("{path}.shape.properties.{missing}"), message);
+                self.problems.push(problem.found("nothing"));
+                return None;
+            }
+        };
+        let torsion = torsion.unwrap_or(fibres[0].max(fibres[1]));
+        Some(Some(Extremes { fibres, torsion }))
     }
 
     /// Refuses keys that beams do not take.

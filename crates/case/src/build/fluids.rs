@@ -37,16 +37,16 @@ impl Builder<'_> {
         Some([given.x, given.y, given.z].map(|k| k.map_or(0.0, |k| k.0)))
     }
 
-    /// Mass per length of the fluid around a section of this outer diameter, kg/m.
+    /// Masses per length of the fluid around a section of this outer diameter, kg/m: what moves with it, and what it displaces.
     pub(super) fn added_mass(
         &mut self,
         path: &str,
         given: Option<AddedMass>,
         diameter: Option<f64>,
-    ) -> Option<f64> {
+    ) -> Option<[f64; 2]> {
         let channel = match given {
-            None => return Some(0.0),
-            Some(AddedMass::PerLength(mass)) => return Some(mass.0),
+            None => return Some([0.0; 2]),
+            Some(AddedMass::PerLength(mass)) => return Some([mass.0, 0.0]),
             Some(AddedMass::Channel(channel)) => channel,
         };
         let path = format!("{path}.added-mass.channel");

@@ -16,6 +16,7 @@ mod explicit;
 mod fluids;
 mod general;
 mod held;
+mod hinged;
 mod laws;
 mod levels;
 mod loads;
@@ -130,6 +131,8 @@ pub struct BuiltProbe {
     pub nodes: Vec<(u32, f64)>,
     /// Cell whose stress is recorded.
     pub cell: Option<carom_mesh::ElementId>,
+    /// Cell of a beam or a shell in whose section forces are recorded, and the end of a beam.
+    pub section: Option<(carom_mesh::ElementId, usize)>,
     /// What is recorded.
     pub record: Vec<Motion>,
     /// Response spectrum of its absolute acceleration.
@@ -233,6 +236,12 @@ impl Builder<'_> {
         }
         self.pieces(&mesh, &bodies);
         self.unglued(&mesh, &bodies);
+        let joined = hinged::Joined {
+            constraints: &constraints,
+            supports: &supports,
+            turns: &turns,
+        };
+        self.hinges_to_solids(&mesh, &bodies, &joined);
         let mut joints = self.joints_of(&mesh, &mut bodies, &supports);
         if !self.plan.zones.is_empty() {
             joints.links.append(&mut links);

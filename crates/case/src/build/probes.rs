@@ -22,32 +22,43 @@ impl Builder<'_> {
         let mut probes = Vec::new();
         for (name, probe) in self.case.probe.iter() {
             let spectrum = self.spectrum(name, probe);
-            let (nodes, cell) = match (&probe.on, &probe.at) {
+            let has = |what| probe.record.contains(&what);
+            let (nodes, cell, section) = match (&probe.on, &probe.at) {
                 (Some(on), _) => {
                     let path = format!("probe.{name}.on");
                     let Some(group) = self.group(mesh, &path, on) else {
                         continue;
                     };
-                    (shares(mesh, group, axisymmetric), None)
+                    (shares(mesh, group, axisymmetric), None, None)
                 }
                 (None, Some(at)) => {
                     let path = format!("probe.{name}.at");
                     let at = self.vector(mesh, &path, at);
                     let node = nearest_node(mesh, bodies, &at);
+                    let thin = bodies.iter().filter(|body| is_thin(body));
                     (
                         node.map(|node| (node, 1.0)).into_iter().collect(),
-                        nearest_cell(mesh, bodies, &at),
+                        nearest_cell(mesh, bodies.iter(), &at),
+                        nearest_cell(mesh, thin, &at).map(|cell| (cell, end(mesh, cell, &at))),
                     )
                 }
                 (None, None) => continue,
             };
-            if probe.record.contains(&Motion::Stress) && cell.is_none() {
-                self.problems.push(without_a_cell(name, probe));
+            if has(Motion::Stress) && cell.is_none() {
+                let (of, accepted) = ("stress", "`at` in place of `on`");
+                self.problems
+                    .push(without_a_cell(name, probe, (Motion::Stress, of, accepted)));
+            }
+            if has(Motion::SectionForces) && section.is_none() {
+                let accepted = "`at`, in a model with beams or shells";
+                let of = (Motion::SectionForces, "section-forces", accepted);
+                self.problems.push(without_a_cell(name, probe, of));
             }
             probes.push(BuiltProbe {
                 name: name.to_string(),
                 nodes,
-                cell: cell.filter(|_| probe.record.contains(&Motion::Stress)),
+                cell: cell.filter(|_| has(Motion::Stress)),
+                section: section.filter(|_| has(Motion::SectionForces)),
                 record: probe.record.clone(),
                 spectrum,
                 filters: probe.filter.iter().map(|class| class.frequency()).collect(),
@@ -186,7 +197,9 @@ impl Builder<'_> {
         nodes.for_each(|&node| used[node as usize] = true);
         for probe in probes {
             let is_there = |cell: ElementId| of.iter().any(|cells| cells.contains(&cell));
-            if probe.cell.is_some_and(|cell| !is_there(cell)) {
+            let cells = probe.cell.into_iter();
+            let section = probe.section.map(|(cell, _)| cell);
+            if cells.chain(section).any(|cell| !is_there(cell)) {
                 let path = format!("probe.{}.at", probe.name);
                 let message =
                     "the nearest cell is one of those that are removed inside an overlapping body";
@@ -230,7 +243,11 @@ fn nearest_node(mesh: &Mesh, bodies: &[ModelBody], at: &[f64; 3]) -> Option<u32>
 }
 
 /// The cell of a body whose middle is nearest to a place; the first of equals.
-fn nearest_cell(mesh: &Mesh, bodies: &[ModelBody], at: &[f64; 3]) -> Option<ElementId> {
+fn nearest_cell<'a>(
+    mesh: &Mesh,
+    bodies: impl Iterator<Item = &'a ModelBody>,
+    at: &[f64; 3],
+) -> Option<ElementId> {
     let distance = |cell: &ElementId| {
         let nodes = mesh.element_nodes(*cell);
         let share = 1.0 / nodes.len() as f64;
@@ -240,22 +257,42 @@ fn nearest_cell(mesh: &Mesh, bodies: &[ModelBody], at: &[f64; 3]) -> Option<Elem
         });
         squared(&middle, at)
     };
-    let cells = bodies
-        .iter()
-        .flat_map(|body| body.spec.cells.iter().copied());
+    let cells = bodies.flat_map(|body| body.spec.cells.iter().copied());
     cells.min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// Whether a body is one of beams or shells, which have forces in sections.
+fn is_thin(body: &ModelBody) -> bool {
+    matches!(
+        body.spec.kinematics,
+        Kinematics::Beam(_) | Kinematics::Shell(_)
+    )
+}
+
+/// The node of a cell of a beam that is nearest to a place; the first of equals.
+fn end(mesh: &Mesh, cell: ElementId, at: &[f64; 3]) -> usize {
+    let nodes = mesh.element_nodes(cell);
+    let [first, second] = [0, 1].map(|k| squared(&mesh.nodes[nodes[k] as usize], at));
+    usize::from(second < first)
 }
 
 fn squared(x: &[f64; 3], y: &[f64; 3]) -> f64 {
     (0..3).map(|i| (x[i] - y[i]).powi(2)).sum()
 }
 
-/// A stress has a cell.
-fn without_a_cell(name: &str, probe: &Probe) -> Problem {
-    let place = probe.record.iter().position(|of| *of == Motion::Stress);
+/// A stress has a cell, and so have forces in a section.
+fn without_a_cell(
+    name: &str,
+    probe: &Probe,
+    (what, key, accepted): (Motion, &str, &str),
+) -> Problem {
+    let place = probe.record.iter().position(|of| *of == what);
     let path = format!("probe.{name}.record[{}]", place.unwrap_or(0));
-    let problem = Problem::new(path, "the stress of a probe is that of one cell");
-    problem.found("stress").accepted(["`at` in place of `on`"])
+    let message = match what {
+        Motion::Stress => "the stress of a probe is that of one cell",
+        _ => "forces in a section are those of one cell of a beam or a shell",
+    };
+    Problem::new(path, message).found(key).accepted([accepted])
 }
 
 /// The nodes of a group, each with ∫ N_a dΩ over the group: with these weights the mean of the nodes is that of the field over the

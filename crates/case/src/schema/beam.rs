@@ -136,4 +136,11 @@ pub struct SectionProperties {
     pub shear_area_y: Option<Area>,
     /// Area that carries a shear force along z; for the theory of Timoshenko.
     pub shear_area_z: Option<Area>,
+    /// Largest distance of the section from its centroid along y, for stresses. Default: not known, and so is the largest stress.
+    pub extreme_y: Option<Length>,
+    /// The same along z; needed in space for stresses of bending.
+    pub extreme_z: Option<Length>,
+    /// Distance r in the largest shear stress of a torque T, T r over the torsion constant: in thin open walls the largest thickness. Default: the larger of
+    /// `extreme-y` and `extreme-z`.
+    pub torsion_distance: Option<Length>,
 }

@@ -33,6 +33,11 @@ pub struct Body {
     /// Hinges of beams. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hinges: Vec<Hinge>,
+    /// Solids about which this body of beams or shells turns freely where it shares nodes with them. A solid has no rotations, so that without this key such a
+    /// hinge is refused. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("uniqueItems" = true))]
+    pub hinged_to: Vec<String>,
     /// Makes the body rigid: its cells keep their shape, and it moves as one. Default: deformable.
     pub rigid: Option<Rigid>,
     /// Reduces the body to the nodes on which something acts and to modes, for a material at small strain. Default: not reduced.

@@ -39,7 +39,8 @@ pub struct Foundation {
 pub enum AddedMass {
     /// Its mass per length.
     PerLength(LineMass),
-    /// That of a fluid at rest in a round channel around a round section.
+    /// That of a fluid in a round channel around a round section, at rest with the frame of coordinates. Gravity and the motion of the base act on the section
+    /// with its buoyancy.
     Channel(Channel),
 }
 

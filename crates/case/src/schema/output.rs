@@ -197,9 +197,13 @@ pub enum Motion {
     /// Acceleration with that of the ground, m/s²: in a run with base acceleration the other quantities are relative to the
     /// ground.
     AbsoluteAcceleration,
-    /// Mean stress of the cell nearest to `at`, Pa, and its von Mises equivalent; at finite strain of Cauchy, of beams and shells the
-    /// mean over the section. It takes about as long as the internal forces of the body.
+    /// Mean stress of the cell nearest to `at`, Pa, and its von Mises equivalent; at finite strain of Cauchy. Of beams and shells the stress is the
+    /// mean over the section, and the von Mises equivalent the largest in it. It takes about as long as the internal forces of the body.
     Stress,
+    /// Forces (N) and moments (N m) in the section of the beam or the shell nearest to `at`: of a beam normal force, shear forces, torque and bending moments at the end of the cell
+    /// nearest to the place, in the axes of the section; of a shell membrane forces (N/m), bending moments (N) and shear forces (N/m) over the axes of
+    /// coordinates. It takes about as long as the internal forces of the body.
+    SectionForces,
     /// What the contact points at the nodes do, of the secondary side of a contact: sum of their normal forces, N, that over the area that they stand for, Pa, and the least of
     /// their gaps, m.
     Contact,
@@ -300,12 +304,13 @@ pub enum Field {
     Velocity,
     /// Acceleration of the nodes, m/s².
     Acceleration,
-    /// Stress of the cells, Pa; of beams and shells the mean over the section, of shells also that at both faces.
+    /// Stress of the cells, Pa, and its von Mises equivalent; of beams and shells the mean over the section with the largest equivalent in it, of shells also the stress at both
+    /// faces, of beams `section_stress`: largest and smallest normal stress and largest shear stress of the section.
     Stress,
     /// Strain of the cells of solids and bars, with `principal_strain`: at small strain that of the displacement, at finite strain the logarithmic one. Zero of
     /// beams and shells, and across a plate under plane stress.
     Strain,
-    /// Principal values of the stress of the cells, the largest first, Pa.
+    /// Principal values of the stress of the cells, the largest first, Pa; of beams and shells where bending makes it largest.
     PrincipalStress,
     /// Stress at the nodes, Pa: the mean of the cells around a node, weighted by their volumes, with `nodal_von_mises`.
     NodalStress,

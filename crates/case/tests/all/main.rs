@@ -13,6 +13,7 @@ mod events;
 mod forged;
 mod general;
 mod grades;
+mod hinged;
 mod interrupts;
 mod large;
 mod levels;

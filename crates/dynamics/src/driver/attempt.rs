@@ -20,6 +20,7 @@ impl Driver {
         (self.failed, self.failed_friction) = (None, None);
         self.effective.return_to_iterations();
         self.renew_targets();
+        self.hide_followed();
         self.size(dt, next);
         self.begin_stage()?;
         let outcome = self.attempt_after_jump(Driver::take_stages);

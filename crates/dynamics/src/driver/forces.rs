@@ -62,10 +62,10 @@ impl Driver {
         let first = after(0, &self.maps);
         let zones = self.maps.all().len();
         if (1..zones).all(|zone| after(zone, &self.maps) == first) {
-            return self.evaluate_loads(start + first);
+            return self.evaluate_loads_over(start + first, self.between());
         }
         for zone in 0..zones {
-            self.evaluate_loads(start + after(zone, &self.maps));
+            self.evaluate_loads_over(start + after(zone, &self.maps), self.between());
             let Vectors { load, work, .. } = &mut self.vectors;
             for (span, _) in self.system.spans.iter().filter(|(_, of)| *of == zone) {
                 work[span.clone()].copy_from_slice(&load[span.clone()]);
@@ -77,7 +77,13 @@ impl Driver {
 
     /// Loads at a time and at the configuration in `place`, N.
     pub(super) fn evaluate_loads(&mut self, time: f64) {
+        self.evaluate_loads_over(time, false);
+    }
+
+    /// The same, of pressures the mean on the way of the step to `place` if `between`.
+    fn evaluate_loads_over(&mut self, time: f64, between: bool) {
         let system = &*self.system;
+        let from = between.then_some(&self.state.motion.u[..]);
         let ramp = system.nonlinear.ramp(time);
         let (load, place) = (&mut self.vectors.load, &self.vectors.place);
         for (sum, dead) in load.iter_mut().zip(&system.load) {
@@ -92,7 +98,11 @@ impl Driver {
                     }
                 }
                 NumberedForce::Follower(given, pressure) => {
-                    given.add_force(factor * pressure, place, load);
+                    let p = factor * pressure;
+                    match from {
+                        None => given.add_force(p, place, load),
+                        Some(from) => given.add_mean_force(p, [from, place], load),
+                    }
                 }
             }
         }

@@ -21,11 +21,11 @@ pub(super) fn damping_rate(map: &StepMap) -> Row {
 }
 
 /// Adds to the effective matrix what loads that turn with the body take from it in this configuration, in a step from `start` of
-/// `dt` (both s).
+/// `dt` (both s). `from`: where the way begins on which forces are means.
 pub(super) fn add_tangent(
     system: &System,
     (maps, start, dt): (&Maps, f64, f64),
-    u: &[f64],
+    (from, u): (Option<&[f64]>, &[f64]),
     a: &mut Csr,
 ) {
     for given in &system.nonlinear.loads {
@@ -39,7 +39,10 @@ pub(super) fn add_tangent(
         let map = &maps.all()[zone];
         let time = start + map.instant(dt);
         let p = factor(&given.amplitude, system.nonlinear.ramp(time), time) * pressure;
-        load.add_tangent(p, u, -map.force.x, a);
+        match from {
+            None => load.add_tangent(p, u, -map.force.x, a),
+            Some(from) => load.add_mean_tangent(p, [from, u], -map.force.x, a),
+        }
     }
 }
 

@@ -31,6 +31,7 @@ mod effective;
 mod factored_step;
 mod far;
 mod floating;
+mod followed;
 mod forces;
 mod friction;
 mod held;

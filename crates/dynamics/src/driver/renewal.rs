@@ -316,7 +316,7 @@ impl Matrices {
                 mass.add_to(damping_rate(at.maps.of(part.start)).x, part, 0, a);
             }
         }
-        super::loads::add_tangent(system, (at.maps, at.start, at.dt), at.u, a);
+        super::loads::add_tangent(system, (at.maps, at.start, at.dt), (at.from, at.u), a);
         Ok(())
     }
 }

@@ -245,6 +245,7 @@ impl Driver {
         self.keep_for_direct_steps();
         self.state.control = Control::start(system.dt);
         self.next.clone_from(&self.state);
+        self.show_followed(0.0);
         self.tell(0.0);
         Ok(())
     }

@@ -156,6 +156,7 @@ impl Driver {
         self.next.control.compression = self.stored.compression;
         self.prepared = false;
         self.swap_states();
+        self.show_followed(size);
         self.tell(size);
     }
 

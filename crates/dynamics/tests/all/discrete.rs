@@ -1,9 +1,13 @@
 //! Point masses, springs and dashpots in whole steps.
 
-use carom_bodies::{BodySpec, Curve, DiscreteKind, DiscreteSpec, FluidGap, Kinematics, Link};
+use carom_bodies::{
+    BeamSection, BeamTheory, BodySpec, Curve, DiscreteKind, DiscreteSpec, FluidGap, Kinematics,
+    Link, MassKind, SectionShape,
+};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, GeneralisedAlpha, Newmark, Theta};
 use carom_dynamics::{
-    Driver, Error, Model, ModelBody, ModelDiscrete, ModelScheme, Preload, Scheme, State, System,
+    Driver, Error, Model, ModelBody, ModelDiscrete, ModelScheme, Preload, Scheme, State, Support,
+    System,
 };
 use carom_elements::Kind;
 use carom_materials::Elastic;
@@ -439,4 +443,85 @@ fn a_resumed_run_takes_the_same_steps() {
         second.state().to_bytes().unwrap(),
         whole.state().to_bytes().unwrap()
     );
+}
+
+/// The fluid in a channel that moves with the base loads a beam as the fluid between it and a second one that is held: with the buoyancy.
+#[test]
+fn a_beam_in_a_channel_feels_an_acceleration_of_the_base_as_one_in_a_held_tube() {
+    const DENSITY: f64 = 1000.0;
+    let radii = [0.01, 0.015];
+    let [added, displaced] = FluidGap::around(DENSITY, radii);
+    let rod = BeamSection {
+        orientation: Some([0.0, 1.0, 0.0]),
+        ..BeamSection::new(
+            BeamTheory::Timoshenko,
+            SectionShape::Circle { diameter: 0.02 }.properties(0.3),
+        )
+    };
+    let beam = |mesh: &Mesh, name: &str, section, mass| ModelBody {
+        mass,
+        ..ModelBody::new(BodySpec::new(
+            name,
+            mesh.groups[name].elements.clone(),
+            Kinematics::Beam(section),
+            Elastic {
+                density: 2500.0,
+                young: 7e10,
+                poisson: 0.3,
+            },
+        ))
+    };
+    let line = |name| generate::line(name, [0.0; 3], [0.8, 0.0, 0.0], 4, 3);
+    let pulled = [0.7, -9.0, 4.0];
+    // the force on the nodes of the first beam
+    let force = |model: Model| -> [f64; 3] {
+        let system = System::new(Model {
+            gravity: pulled,
+            ..model
+        })
+        .unwrap();
+        let nodes = (0..5).map(|node| system.unknowns.vector(system.number[node], &system.load));
+        nodes.fold([0.0; 3], |sum, f| [0, 1, 2].map(|i| sum[i] + f[i]))
+    };
+    for mass in [MassKind::Lumped, MassKind::Consistent] {
+        let mesh = line("one");
+        let wet = BeamSection {
+            added_mass: added,
+            displaced_mass: displaced,
+            ..rod
+        };
+        let channel = Model::new(vec![beam(&mesh, "one", wet, mass)], mesh, TRAPEZOID, 1e-5);
+        let mut mesh = line("one");
+        mesh.merge("two", line("two")).unwrap();
+        let bodies = vec![beam(&mesh, "one", rod, mass), beam(&mesh, "two", rod, mass)];
+        let gaps = [0.1, 0.2, 0.2, 0.2, 0.1].into_iter().zip(0..);
+        let gaps = gaps.map(|(length, node)| {
+            let cell = mesh.push(Kind::Bar2, &[node, node + 5]);
+            let fluid = FluidGap {
+                axis: Some([1.0, 0.0, 0.0]),
+                ..FluidGap::new(DENSITY, radii, length)
+            };
+            made(format!("gap{node}"), cell, DiscreteKind::Fluid(fluid))
+        });
+        let tube = Model {
+            discrete: gaps.collect(),
+            supports: vec![Support {
+                nodes: (5..10).collect(),
+                fix: [true; 3],
+                fix_rotations: [true; 3],
+            }],
+            ..Model::new(bodies, mesh, TRAPEZOID, 1e-5)
+        };
+        let (own, other) = (force(channel), force(tube));
+        let mass = 2500.0 * rod.properties.area * 0.8;
+        let exact = [mass, mass - 0.8 * displaced, mass - 0.8 * displaced];
+        for i in 0..3 {
+            // sums of five nodes
+            assert!(
+                (own[i] / (exact[i] * pulled[i]) - 1.0).abs() < 1e-12,
+                "{own:?}"
+            );
+            assert!((other[i] / own[i] - 1.0).abs() < 1e-12, "{own:?} {other:?}");
+        }
+    }
 }

@@ -1,6 +1,9 @@
-//! Fields of beams: rotations of nodes, forces and moments in sections.
+//! Fields of beams: rotations of nodes, forces, moments and stresses in sections.
 
+use carom_bodies::SectionStress;
 use carom_dynamics::{Motion, System};
+
+use crate::vtu::{Field, Values};
 
 /// Small rotations of the nodes, rad; zero where a node has none.
 pub(crate) fn rotations(system: &System, u: &[f64]) -> Vec<[f64; 3]> {
@@ -41,4 +44,48 @@ pub(crate) fn section_forces(system: &System, motion: &Motion) -> [Vec<[f64; 3]>
         }
     }
     fields
+}
+
+/// The largest stresses in the sections of beams, over all cells; none in other cells.
+pub(crate) struct SectionStresses {
+    of_cells: Vec<Option<SectionStress>>,
+    /// Largest and smallest normal stress and largest shear stress, Pa.
+    shown: Vec<[f64; 3]>,
+}
+
+impl SectionStresses {
+    /// `None` without beams.
+    pub(crate) fn new(system: &System, motion: &Motion) -> Option<SectionStresses> {
+        let mut of_cells = Vec::new();
+        for (k, body) in system.bodies.iter().enumerate() {
+            let history = system.history(k, &motion.history);
+            let to = of_cells.len() + body.cells().len();
+            if let Some(own) = body.section_stresses(&motion.u, &motion.frames, history) {
+                of_cells.extend(own.into_iter().map(Some));
+            }
+            of_cells.resize(to, None);
+        }
+        let shown = |stress: &Option<SectionStress>| {
+            stress.map_or([0.0; 3], |SectionStress { normal, shear, .. }| {
+                [normal[0], normal[1], shear]
+            })
+        };
+        let any = of_cells.iter().any(Option::is_some);
+        any.then(|| SectionStresses {
+            shown: of_cells.iter().map(shown).collect(),
+            of_cells,
+        })
+    }
+
+    /// Of each cell.
+    pub(crate) fn of_cells(&self) -> &[Option<SectionStress>] {
+        &self.of_cells
+    }
+
+    pub(crate) fn field(&self) -> Field<'_> {
+        Field {
+            name: "section_stress",
+            values: Values::Vector(&self.shown),
+        }
+    }
 }

@@ -1,10 +1,12 @@
 //! Fields with one value per cell, over the cells of all bodies in their order.
 
 use carom_algebra::tensor::Mat3;
-use carom_bodies::{Body, Resultants};
+use carom_bodies::{Body, Resultants, SectionStress};
 use carom_dynamics::{Motion, System};
 
 use crate::results::Fields;
+use crate::results::beams::SectionStresses;
+use crate::results::derived::principal;
 use crate::vtu::{Field, Values};
 
 /// Bodies of whose cells there are fields, each with the history of its materials.
@@ -41,6 +43,11 @@ pub(crate) fn in_order(s: &Mat3) -> [f64; 6] {
     ]
 }
 
+/// A symmetric tensor of VTK's order.
+fn from_order([xx, yy, zz, xy, yz, xz]: &[f64; 6]) -> Mat3 {
+    Mat3::new(*xx, *xy, *xz, *xy, *yy, *yz, *xz, *yz, *zz)
+}
+
 /// Fields of shells, zero in other cells but for the stresses.
 #[derive(Default)]
 pub(crate) struct ShellFields {
@@ -52,6 +59,10 @@ pub(crate) struct ShellFields {
     pub bending: Vec<[f64; 6]>,
     /// N/m.
     pub shear: Vec<[f64; 3]>,
+    /// Largest equivalent stress between the faces, Pa.
+    pub between: Vec<f64>,
+    /// Whether each cell is one of a shell.
+    pub is_shell: Vec<bool>,
 }
 
 impl ShellFields {
@@ -83,8 +94,10 @@ impl ShellFields {
                     fields.membrane.resize(to, [0.0; 6]);
                     fields.bending.resize(to, [0.0; 6]);
                     fields.shear.resize(to, [0.0; 3]);
+                    fields.between.resize(to, 0.0);
                 }
             }
+            fields.is_shell.resize(fields.shear.len(), is_shell(body));
         }
         Some(fields)
     }
@@ -118,18 +131,85 @@ impl ShellFields {
         self.membrane.push(in_order(&own.membrane));
         self.bending.push(in_order(&own.bending));
         self.shear.push(own.shear);
+        self.between.push(own.between);
     }
 }
 
-/// Equivalent stress of von Mises of each cell, Pa: of a shell the largest of its middle and its faces.
-pub(crate) fn cell_von_mises(stress: &[[f64; 6]], shells: Option<&ShellFields>) -> Vec<f64> {
-    let mut mises: Vec<f64> = stress.iter().map(von_mises).collect();
-    for face in shells.iter().flat_map(|shells| &shells.faces) {
-        for (mises, stress) in mises.iter_mut().zip(face) {
-            *mises = mises.max(von_mises(stress));
+/// Stresses that bending varies over the thickness of shells and over the sections of beams.
+pub(crate) struct Bent {
+    pub(crate) shells: Option<ShellFields>,
+    pub(crate) beams: Option<SectionStresses>,
+}
+
+impl Bent {
+    /// `stress`: of each cell, or nothing where it is not asked for.
+    pub(crate) fn new(system: &System, motion: &Motion, stress: &[[f64; 6]]) -> Bent {
+        Bent {
+            shells: ShellFields::new(system, motion, stress),
+            beams: SectionStresses::new(system, motion),
         }
     }
-    mises
+
+    /// Equivalent stress of von Mises of each cell, Pa: of a shell the largest through its thickness, of a beam the largest of its
+    /// sections. `stress`: mean of each cell.
+    pub(crate) fn von_mises(&self, stress: &[[f64; 6]]) -> Vec<f64> {
+        let mut mises: Vec<f64> = stress.iter().map(von_mises).collect();
+        for face in self.faces() {
+            for (mises, stress) in mises.iter_mut().zip(face) {
+                *mises = mises.max(von_mises(stress));
+            }
+        }
+        let between = self.shells.iter().flat_map(|shells| &shells.between);
+        for (mises, between) in mises.iter_mut().zip(between) {
+            *mises = mises.max(*between);
+        }
+        for (mises, section) in mises.iter_mut().zip(self.sections()) {
+            *mises = section.map_or(*mises, |section| section.von_mises);
+        }
+        mises
+    }
+
+    /// Principal stresses of each cell, the largest first, Pa: of a shell those of the face or the middle with the largest equivalent stress, of
+    /// a beam the largest and the smallest of its sections. `stress`: mean of each cell.
+    pub(crate) fn principal(&self, stress: &[[f64; 6]]) -> Vec<[f64; 3]> {
+        let mut most = stress.to_vec();
+        for face in self.faces() {
+            for (most, stress) in most.iter_mut().zip(face) {
+                if von_mises(stress) > von_mises(most) {
+                    *most = *stress;
+                }
+            }
+        }
+        let mut all: Vec<[f64; 3]> = most.iter().map(|s| principal(&from_order(s))).collect();
+        for (all, section) in all.iter_mut().zip(self.sections()) {
+            if let Some([largest, smallest]) = section.map(|section| section.principal) {
+                *all = [largest, 0.0, smallest];
+            }
+        }
+        all
+    }
+
+    /// [`Bent::von_mises`] of the cells of shells and beams; no number in others, whose mean stress says all.
+    pub(crate) fn of_thin(&self, stress: &[[f64; 6]]) -> Vec<[f64; 1]> {
+        let mises = self.von_mises(stress);
+        let thin = |cell: usize| {
+            let shells = self.shells.as_ref();
+            shells.is_some_and(|shells| shells.is_shell[cell])
+                || self.sections().get(cell).is_some_and(Option::is_some)
+        };
+        let all = mises.into_iter().enumerate();
+        all.map(|(cell, mises)| [if thin(cell) { mises } else { f64::NAN }])
+            .collect()
+    }
+
+    fn faces(&self) -> impl Iterator<Item = &[[f64; 6]]> {
+        let shells = self.shells.iter();
+        shells.flat_map(|shells| shells.faces.iter().map(Vec::as_slice))
+    }
+
+    fn sections(&self) -> &[Option<SectionStress>] {
+        self.beams.as_ref().map_or(&[], SectionStresses::of_cells)
+    }
 }
 
 /// Equivalent plastic strain of each cell, zero in bodies without; `None` if no body has any.

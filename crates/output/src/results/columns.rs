@@ -7,6 +7,7 @@ use carom_dynamics::System;
 use crate::Error;
 use crate::history::column;
 use crate::results::Settings;
+use crate::results::probed::Cells;
 use crate::results::sensor::{COMPONENTS, ContactPoint};
 use crate::rows::unique;
 
@@ -36,15 +37,6 @@ const MOTIONS: [(&str, &str); 3] = [
     ("velocity", "m/s"),
     ("acceleration", "m/s²"),
 ];
-
-/// What is written of a stress, by the dimension.
-pub(super) fn stresses(system: &System) -> &'static [&'static str] {
-    match system.dim {
-        1 => &["xx", "von mises"],
-        2 => &["xx", "yy", "zz", "xy", "von mises"],
-        _ => &["xx", "yy", "zz", "xy", "yz", "xz", "von mises"],
-    }
-}
 
 /// The axes about which supports have moments.
 pub(super) fn moments(system: &System) -> Range<usize> {
@@ -143,9 +135,8 @@ pub(crate) fn columns(
             names.extend(components.iter().map(of));
         }
     }
-    for probe in settings.probes.iter().filter(|probe| probe.cell.is_some()) {
-        let of = |what: &&str| column(&["probe", &probe.name, &format!("stress {what}")], "Pa");
-        names.extend(stresses(system).iter().map(of));
+    for probe in &settings.probes {
+        names.extend(Cells::new(system, probe).columns(system, probe));
     }
     for probe in settings.probes.iter().filter(|probe| probe.contact) {
         let of = |(what, unit): &(&str, &str)| column(&["probe", &probe.name, what], unit);

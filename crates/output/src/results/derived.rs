@@ -3,6 +3,9 @@
 //! Strains are those of solids and bars, at the middle of a cell: at small strain ε = sym ∂u/∂X, at finite strain and of rigid bodies the logarithmic
 //! strain ½ ln F Fᵀ, which goes with Cauchy's stress. In axisymmetry the third normal strain is that of the circumference; the strain
 //! across a plate under plane stress is not known here and zero, as are all strains of beams and shells.
+//!
+//! Principal stresses of shells and beams are those where bending makes the stress largest. The equivalent stress at nodes is that of the stress there,
+//! around which shells and beams have at least the mean of theirs.
 
 use carom_algebra::tensor::Mat3;
 use carom_bodies::Body;
@@ -10,7 +13,7 @@ use carom_dynamics::{Motion, System};
 use carom_elements::{Element, MAX_NODES, map};
 
 use crate::results::Fields;
-use crate::results::cells::{Bodies, in_order, von_mises};
+use crate::results::cells::{Bent, Bodies, in_order, von_mises};
 use crate::vtu::{Field, Values};
 
 /// Those that are asked for; empty otherwise.
@@ -38,14 +41,20 @@ impl Derived {
         }
         if asked.principal_stress || asked.nodal_stress {
             let stresses = stresses(bodies, motion);
+            let all = stresses.iter().flatten();
+            let means: Vec<[f64; 6]> = all.map(|(_, stress)| in_order(stress)).collect();
+            let bent = Bent::new(system, motion, &means);
             if asked.principal_stress {
-                let all = stresses.iter().flatten();
-                derived.principal_stress = all.map(|(_, stress)| principal(stress)).collect();
+                derived.principal_stress = bent.principal(&means);
             }
             if asked.nodal_stress {
-                derived.nodal_stress = at_nodes((system, bodies), &stresses);
+                derived.nodal_stress = at_nodes((system, bodies), &stresses, &means);
                 let nodes = derived.nodal_stress.iter();
                 derived.nodal_von_mises = nodes.map(von_mises).collect();
+                let thin = at_nodes((system, bodies), &stresses, &bent.of_thin(&means));
+                for (mises, [beyond]) in derived.nodal_von_mises.iter_mut().zip(thin) {
+                    *mises = mises.max(beyond);
+                }
             }
         }
         derived
@@ -92,12 +101,16 @@ fn stresses(bodies: &Bodies, motion: &Motion) -> Vec<Vec<(f64, Mat3)>> {
         .collect()
 }
 
-/// Stress at each node of the system, Pa: the mean of the cells that have it, weighted by their volumes; zero where there is none.
-fn at_nodes((system, bodies): (&System, &Bodies), stresses: &[Vec<(f64, Mat3)>]) -> Vec<[f64; 6]> {
-    let mut sums = vec![(0.0, [0.0; 6]); system.x.len()];
+/// Values at each node of the system: the mean of those of the cells that have it, weighted by their volumes; zero where there is none.
+fn at_nodes<const N: usize>(
+    (system, bodies): (&System, &Bodies),
+    stresses: &[Vec<(f64, Mat3)>],
+    values: &[[f64; N]],
+) -> Vec<[f64; N]> {
+    let mut sums = vec![(0.0, [0.0; N]); system.x.len()];
+    let mut values = values.iter();
     for ((body, _), own) in bodies.iter().zip(stresses) {
-        for (cell, (volume, stress)) in body.cells().iter().zip(own) {
-            let stress = in_order(stress);
+        for ((cell, (volume, _)), stress) in body.cells().iter().zip(own).zip(&mut values) {
             if !stress.iter().all(|component| component.is_finite()) {
                 continue;
             }
@@ -110,9 +123,9 @@ fn at_nodes((system, bodies): (&System, &Bodies), stresses: &[Vec<(f64, Mat3)>])
             }
         }
     }
-    let mean = |(volume, sum): (f64, [f64; 6])| match volume > 0.0 {
+    let mean = |(volume, sum): (f64, [f64; N])| match volume > 0.0 {
         true => sum.map(|component| component / volume),
-        false => [0.0; 6],
+        false => [0.0; N],
     };
     sums.into_iter().map(mean).collect()
 }

@@ -13,9 +13,7 @@ use carom_mesh::Face;
 
 use crate::Error;
 use crate::results::beams::{SECTION_FORCES, rotations, section_forces};
-use crate::results::cells::{
-    ShellFields, all_bodies, cell_stresses, cell_von_mises, deleted, plastic_strains,
-};
+use crate::results::cells::{Bent, all_bodies, cell_stresses, deleted, plastic_strains};
 use crate::results::derived::Derived;
 use crate::results::pieces::{self, Piece};
 use crate::results::snapshot::Snapshot;
@@ -140,11 +138,14 @@ impl Volume {
             false => Vec::new(),
         };
         let plastic = plastic_strains(&bodies);
-        let shells = match fields.stress || fields.section_forces {
-            true => ShellFields::new(system, &snapshot.motion, &stress),
+        let bent = match fields.stress || fields.section_forces {
+            true => Some(Bent::new(system, &snapshot.motion, &stress)),
             false => None,
         };
-        let mises = cell_von_mises(&stress, shells.as_ref());
+        let mises = match &bent {
+            Some(bent) if fields.stress => bent.von_mises(&stress),
+            _ => Vec::new(),
+        };
         let derived = Derived::new((system, &bodies), &snapshot.motion, fields);
         point_fields.extend(derived.point_fields());
         let mut cell_fields = vec![Field {
@@ -180,8 +181,11 @@ impl Volume {
             });
         }
         cell_fields.extend(derived.cell_fields());
-        if let Some(shells) = &shells {
+        if let Some(shells) = bent.as_ref().and_then(|bent| bent.shells.as_ref()) {
             cell_fields.extend(shells.fields(fields));
+        }
+        if let Some(beams) = bent.as_ref().and_then(|bent| bent.beams.as_ref()) {
+            cell_fields.extend(fields.stress.then(|| beams.field()));
         }
         let forces = SECTION_FORCES.iter().zip(&forces);
         cell_fields.extend(

@@ -13,8 +13,8 @@ use carom_dynamics::{ContactReport, Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
 use crate::history::column;
-use crate::results::cells::{in_order, von_mises};
-use crate::results::columns::{contact_columns, deletes, files, moments, stresses, turns};
+use crate::results::columns::{contact_columns, deletes, files, moments, turns};
+use crate::results::probed::Cells;
 use crate::results::sensor::{ContactPoint, Sensor};
 use crate::results::{Probe, Settings, Zoning};
 use crate::rows::Cell;
@@ -27,8 +27,8 @@ pub(crate) struct Histories {
     contact: Option<History>,
     links: bool,
     probes: Vec<(Probe, Vec<Sensor>)>,
-    /// Body and place in it of the cell of each probe, if it has one.
-    cells: Vec<Option<[usize; 2]>>,
+    /// The cells of each probe.
+    cells: Vec<Cells>,
     /// The contact points of each probe, with the parts of their forces there, if it follows them.
     points: Vec<Option<Vec<(usize, f64)>>>,
     row: Vec<Cell<'static>>,
@@ -75,16 +75,13 @@ impl Histories {
             }
             false => None,
         };
+        let probes = settings.probes.iter();
         Ok(Histories {
             file: Some(open(&path, columns, 0)?),
             contact,
             row: Vec::with_capacity(columns.len()),
-            cells: settings.probes.iter().map(|of| cell(system, of)).collect(),
-            points: settings
-                .probes
-                .iter()
-                .map(|of| points(system, of))
-                .collect(),
+            cells: probes.clone().map(|of| Cells::new(system, of)).collect(),
+            points: probes.map(|of| points(system, of)).collect(),
             since: since.unwrap_or_default(),
             ..Histories::closed(settings, sensors)
         })
@@ -163,10 +160,8 @@ impl Histories {
                 row.extend(sensors.iter().zip(frame).map(of));
             }
         }
-        for ((probe, _), at) in self.probes.iter().zip(&self.cells) {
-            if probe.cell.is_some() {
-                row.extend(stress(system, *at, state));
-            }
+        for ((probe, _), cells) in self.probes.iter().zip(&self.cells) {
+            cells.push((system, probe), state, row);
         }
         for points in self.points.iter().flatten() {
             row.extend(at_points(system, points, state));
@@ -313,16 +308,6 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
     }
 }
 
-/// Body and place in it of the cell of a probe.
-fn cell(system: &System, probe: &Probe) -> Option<[usize; 2]> {
-    let cell = probe.cell?;
-    let mut bodies = system.bodies.iter().enumerate();
-    bodies.find_map(|(k, body)| {
-        let place = body.cells().iter().position(|own| *own == cell)?;
-        Some([k, place])
-    })
-}
-
 /// The contact points at the nodes of a probe that follows them, each with the part of its force there.
 fn points(system: &System, probe: &Probe) -> Option<Vec<(usize, f64)>> {
     if !probe.contact {
@@ -355,25 +340,6 @@ fn at_points(system: &System, points: &[(usize, f64)], state: &State) -> [Cell<'
     let gap = Some(gap).filter(|gap| *gap != f64::INFINITY);
     [Cell::Number(force), pressure.into(), gap.into()]
 }
-
-/// Mean stress of a cell and its equivalent, in the order of [`stresses`].
-fn stress(system: &System, at: Option<[usize; 2]>, state: &State) -> Vec<Cell<'static>> {
-    let tensor = at.and_then(|[k, place]| {
-        let history = system.history(k, &state.motion.history);
-        let stress = system.bodies[k].stress(place, &state.motion.u, history);
-        stress.map(|(_, stress)| in_order(&stress))
-    });
-    let of = |name: &str| {
-        let tensor = tensor.as_ref()?;
-        let place = TENSOR.iter().position(|component| *component == name);
-        Some(place.map_or(von_mises(tensor), |place| tensor[place]))
-    };
-    let cells = stresses(system).iter().map(|name| Cell::from(of(name)));
-    cells.collect()
-}
-
-/// Components of a symmetric tensor in the order of fields.
-const TENSOR: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
 /// Adds the forces and moments of the supports; nothing is known of them before the first step.
 fn push_supports(system: &System, report: &StepReport, row: &mut Vec<Cell>) {

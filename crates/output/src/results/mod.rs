@@ -35,6 +35,7 @@ mod meetings;
 pub(crate) mod outlines;
 pub(crate) mod page;
 mod pieces;
+mod probed;
 mod rank_pieces;
 mod reduced;
 pub(crate) mod sensor;
@@ -335,8 +336,9 @@ pub fn watched(settings: &Settings, system: &System) -> Result<Watched, Error> {
     for probe in &settings.probes {
         let sensors = sensor::of_probe(system, probe)?;
         nodes.extend(sensors.iter().flat_map(sensor::Sensor::nodes));
-        let cells = probe.cell.iter();
-        let of_cells = cells.flat_map(|&cell| system.mesh.element_nodes(cell));
+        let of_cells = probe
+            .cells()
+            .flat_map(|cell| system.mesh.element_nodes(cell));
         nodes.extend(of_cells.map(|&node| system.number[node as usize]));
     }
     nodes.retain(|node| *node != u32::MAX);
@@ -364,11 +366,8 @@ impl Observer for Results {
         let (time, report) = (run.state().time, run.report());
         let fields = self.fields.as_ref();
         // the stress of a cell is a function of its history
-        let cells = self
-            .settings
-            .probes
-            .iter()
-            .any(|probe| probe.cell.is_some());
+        let mut probes = self.settings.probes.iter();
+        let cells = probes.any(|probe| probe.cells().next().is_some());
         let all = fields.is_some_and(|fields| fields.wants_all(&self.system, time))
             || self.stills.wants(time, report).contains(&true)
             || self.instants.wants(report)

@@ -116,6 +116,8 @@ pub struct Probe {
     pub nodes: Vec<(u32, f64)>,
     /// Cell of a body whose mean stress is written.
     pub cell: Option<ElementId>,
+    /// Cell of a beam or a shell in whose section forces and moments are written, and the end (0 or 1) of a beam.
+    pub section: Option<(ElementId, usize)>,
     /// Whether the displacement is written, m.
     pub displacement: bool,
     /// Whether the velocity is written, m/s.
@@ -155,6 +157,12 @@ impl Spectrum {
 }
 
 impl Probe {
+    /// The cells of which something is written.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = ElementId> {
+        let section = self.section.map(|(cell, _)| cell);
+        self.cell.into_iter().chain(section)
+    }
+
     /// Displacement, velocity, acceleration.
     pub(crate) fn recorded(&self) -> [bool; 3] {
         [self.displacement, self.velocity, self.acceleration]

@@ -192,6 +192,7 @@ pub fn probe(system: &System, name: &str, group: &str) -> Probe {
             nodes.into_iter().map(|node| (node, 1.0)).collect()
         },
         cell: None,
+        section: None,
         displacement: true,
         velocity: true,
         acceleration: true,

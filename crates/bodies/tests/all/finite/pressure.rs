@@ -114,6 +114,51 @@ fn force_is_the_derivative_of_pressure_times_volume() {
     }
 }
 
+/// However far the way is: volumes are of third degree of the displacement at most.
+#[test]
+fn the_mean_force_on_a_way_does_the_work_of_the_change_of_volume() {
+    for sample in bodies() {
+        let pressure = all_around(&sample);
+        let [from, to] = [81, 82].map(|seed| displacement(&sample, seed));
+        let mut mean = vec![0.0; sample.n];
+        pressure.add_mean_force(1.3, [&from, &to], &mut mean);
+        let way = mean.iter().zip(&from).zip(&to);
+        let work: f64 = way.map(|((f, from), to)| f * (to - from)).sum();
+        let change = volume(&sample, &to) - volume(&sample, &from);
+        // volumes of order one, rounded
+        assert!((work + 1.3 * change).abs() < 1e-12, "{}", sample.name);
+        // where the way has no length it is the force there
+        let (mut still, force) = (vec![0.0; sample.n], force(&sample, &pressure, &to));
+        pressure.add_mean_force(1.3, [&to, &to], &mut still);
+        assert!(distance(&still, &force) < 1e-14 * largest(&force));
+    }
+}
+
+#[test]
+fn the_mean_tangent_is_the_derivative_of_the_mean_force_by_the_end_of_the_way() {
+    const STEP: f64 = 1e-5;
+    for sample in bodies() {
+        let pressure = all_around(&sample);
+        let [from, to] = [83, 84].map(|seed| displacement(&sample, seed));
+        let mut matrix: Csr = sample.pattern();
+        pressure.add_mean_tangent(1.3, [&from, &to], -1.0, &mut matrix);
+        let k = dense(&matrix, sample.n);
+        for i in (0..sample.n).step_by(7) {
+            let at = |side: f64| {
+                let (mut moved, mut f) = (to.clone(), vec![0.0; sample.n]);
+                moved[i] += side * STEP;
+                pressure.add_mean_force(1.3, [&from, &moved], &mut f);
+                f
+            };
+            let pair = at(1.0).into_iter().zip(at(-1.0));
+            let slope: Vec<f64> = pair.map(|(a, b)| (b - a) / (2.0 * STEP)).collect();
+            let column: Vec<f64> = (0..sample.n).map(|row| k[row * sample.n + i]).collect();
+            let error = distance(&slope, &column);
+            assert!(error < 1e-9 * largest(&k), "{}: {error}", sample.name);
+        }
+    }
+}
+
 #[test]
 fn a_closed_surface_is_pushed_nowhere() {
     for sample in bodies() {

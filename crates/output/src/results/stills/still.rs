@@ -5,9 +5,7 @@ use carom_contact::law::Status;
 use carom_dynamics::{InterfaceState, Motion, Order, System};
 use serde::{Deserialize, Serialize};
 
-use crate::results::cells::{
-    ShellFields, all_bodies, cell_stresses, cell_von_mises, deleted, plastic_strains,
-};
+use crate::results::cells::{Bent, all_bodies, cell_stresses, deleted, plastic_strains};
 use crate::results::derived::largest_principal_strain;
 use crate::results::stills::Seen;
 
@@ -87,8 +85,7 @@ impl Still {
         });
         let bodies = all_bodies(system, &motion.history);
         let stress = cell_stresses(&bodies, &motion.u);
-        let shells = ShellFields::new(system, motion, &stress);
-        let von_mises = cell_von_mises(&stress, shells.as_ref());
+        let von_mises = Bent::new(system, motion, &stress).von_mises(&stress);
         let plastic = plastic_strains(&bodies);
         let deleted = deleted(system, &motion.history);
         let shown = |values: &[f64]| -> Vec<f32> {
