@@ -11,10 +11,10 @@
 use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
-pub(crate) use self::foot::{faces_point, foot_on, hull, spread};
+pub(crate) use self::foot::{diagonal, faces_point, foot_on, is_beside_rim, spread};
 use self::group::Group;
 use self::guess::Guesses;
-use self::kept::{Kept, squared};
+use self::kept::Kept;
 use crate::rest::Rest;
 use crate::sight::View;
 use crate::{Places, Point, Sight};
@@ -168,7 +168,9 @@ impl Search {
         let watched = self.watches && view.is_none();
         let found = self
             .closest((places, faces), view, x, f64::INFINITY)
-            .filter(|(foot, face)| faces_point(foot, face));
+            .filter(|(foot, face)| {
+                faces_point(foot, face, view.is_none(), || diagonal(places, face))
+            });
         if let (true, Some((foot, face)), Some(item)) = (watched, &found, self.kept[slot].face)
             && foot.gap.abs() < NEAR * diagonal(places, face)
         {
@@ -238,10 +240,4 @@ impl Way {
         }
         self.faces.push(item);
     }
-}
-
-/// Diagonal of the box of a face, m.
-fn diagonal(places: &Places, face: &Face) -> f64 {
-    let bounds = hull(places, face);
-    squared(&bounds.min, &bounds.max).sqrt()
 }

@@ -14,9 +14,9 @@ use super::stencil::Stencil;
 use super::{Near, Pairing};
 use crate::rest::{BLOCK, Rest};
 use crate::search::faces::{FaceTree, Question};
-use crate::search::faces_point;
 use crate::search::group::Group;
 use crate::search::kept::Kept;
+use crate::search::{diagonal, faces_point};
 use crate::{Contact, Places, Search, Target};
 
 impl Contact {
@@ -142,7 +142,7 @@ impl Contact {
         let is_near = |distance: f64| inside || distance <= limit;
         match (found, view) {
             (Some((foot, face)), _) if is_near(foot.distance) => {
-                let faces = faces_point(&foot, face);
+                let faces = faces_point(&foot, face, view.is_none(), || diagonal(target.0, face));
                 let near = faces && foot.gap - point.radius + self.offset(k) <= reach.near;
                 let stencil = near.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
                 (stencil, 0.0)

@@ -18,6 +18,7 @@ use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
+use super::passage::Passage;
 use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use super::supports::Jump;
@@ -109,6 +110,7 @@ impl Driver {
             narrowed_for: 0,
             watch: Watch::new(&system),
             active: Active::of(&system),
+            passage: Passage::of(&system),
             far: Far::of(&system, |_| true),
             candidates: Vec::new(),
             candidate_data: Vec::new(),

@@ -5,6 +5,7 @@
 
 mod allocation;
 mod beams;
+mod beside;
 mod crossing;
 mod direct;
 mod discrete;
@@ -25,6 +26,7 @@ mod moments;
 mod momentum;
 mod mortar;
 mod newton;
+mod passage;
 mod quadrature;
 mod refusals;
 mod rolling;

@@ -3,6 +3,7 @@
 
 mod chatter;
 mod convergence;
+mod crossing;
 mod energy;
 mod exact;
 mod explicit;
@@ -38,6 +39,8 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     chatter::of_contacts,
     penetration::of_contacts,
     penetration::of_passing,
+    crossing::of_contacts,
+    crossing::between,
     resolution::of_peaks,
     resolution::of_impulses,
     exact::force,
