@@ -16,6 +16,7 @@ mod floating;
 mod flowing;
 mod fold;
 mod friction;
+mod held;
 mod impacts;
 mod initial;
 mod interface;
