@@ -15,7 +15,7 @@ use carom_contact::{
     Contact, Frames, Integration, Law, Places, Point, Rows, Search, Sliding, Target,
 };
 use carom_elements::Kind;
-use carom_mesh::{ElementId, Face, face_nodes};
+use carom_mesh::{ElementId, Face, Rim, face_nodes};
 use criterion::{BenchmarkId, Criterion, SamplingMode};
 
 /// What of a pairing is timed.
@@ -146,6 +146,7 @@ fn scene(side: u32) -> (Vec<[f64; 3]>, Contact) {
             parent: ElementId { block: 0, index: i },
             axis: [0.0; 3],
             radius: None,
+            rim: Rim::default(),
         }
     };
     let faces = (0..side * side).map(face).collect();

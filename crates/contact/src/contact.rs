@@ -1,6 +1,6 @@
 //! One contact: secondary points that carry the forces, what they face, and the law between them.
 
-use carom_mesh::{Face, Projection, QUADS};
+use carom_mesh::{Face, Projection, QUADS, Rim};
 
 use crate::crossing::Opposite;
 use crate::sight::View;
@@ -9,7 +9,7 @@ use crate::{Basis, Held, Law, Mortar, Obstacle, Places, Point, Search, Shape, Si
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Target {
-    /// Faces of deformable bodies, their nodes by system number; normals point out of the bodies.
+    /// Faces of deformable bodies, their nodes by system number; normals point out of the bodies. Their rims are marked.
     Surface(Vec<Face>),
     /// A rigid obstacle.
     Rigid(Obstacle),
@@ -120,10 +120,11 @@ impl Contact {
 
     /// The contact with other faces of the target, by system number; of a surface that faces itself points see what is around them of these
     /// faces too. `x`: reference coordinates by system number, m.
-    pub fn with_faces(&self, faces: Vec<Face>, x: &[[f64; 3]]) -> Contact {
+    pub fn with_faces(&self, mut faces: Vec<Face>, x: &[[f64; 3]]) -> Contact {
+        Rim::mark(&mut faces, |node| x[node as usize], |node| node);
         let sight = match self.faces_itself() {
             true => Some(Sight::new((&self.points, &faces), &faces, x, None)),
-            false => self.sight.clone(),
+            false => self.sight.as_ref().map(|sight| sight.with_target(&faces)),
         };
         Contact {
             target: Target::Surface(faces),

@@ -169,7 +169,7 @@ impl Point {
 mod tests {
     use carom_algebra::unknowns::Unknowns;
     use carom_elements::Kind;
-    use carom_mesh::{ElementId, face_nodes};
+    use carom_mesh::{ElementId, Rim, face_nodes};
 
     use super::*;
     use crate::Frames;
@@ -181,6 +181,7 @@ mod tests {
             parent: ElementId { block: 0, index: 0 },
             axis: [1.0, 0.0, 0.0],
             radius: None,
+            rim: Rim::default(),
         }
     }
 

@@ -12,6 +12,9 @@ pub(crate) const BLOCK: usize = 64;
 /// Reach over the largest motion of a node in a step.
 const MOTIONS: f64 = 8.0;
 
+/// The least that a reach must be, over that motion.
+pub(crate) const AHEAD: f64 = 4.0;
+
 /// Least reach over the largest.
 const LEAST: f64 = 1.0 / 64.0;
 
@@ -130,13 +133,22 @@ impl Rest {
         self.motion
     }
 
-    /// Gap within which a point may touch now, where the last pairing was one step before, m; at most `most` (m).
+    /// Gap within which a point may touch now, where the last pairing was one step before, m; at most `most` (m), unless that is less than
+    /// what touches.
     ///
     /// Nodes of both sides have moved by at most the motion m in the step, so that a gap has changed by 2 m. Laws look one step
     /// ahead or two, by 4 m; the motion of a step is less than twice that of the step before it but for bodies that begin to
-    /// move, for which there is a least reach.
+    /// move, for which there is a least reach. A point that has come in the step may be behind what it faced by 2 m, however much that is.
     pub(crate) fn reach(motion: f64, most: f64) -> f64 {
-        (MOTIONS * motion).clamp(LEAST * most, most)
+        (MOTIONS * motion).clamp(LEAST * most, Rest::least_reach(motion, most))
+    }
+
+    /// `most` (m), or what touches after a motion (m) where that is more; of one that is not known `most`.
+    pub(crate) fn least_reach(motion: f64, most: f64) -> f64 {
+        match motion.is_finite() {
+            true => most.max(AHEAD * motion),
+            false => most,
+        }
     }
 
     /// The gap that points at rest are to be beyond, m: at least a reach, and more by a factor of 2 to 8, so that it stays for many steps; at

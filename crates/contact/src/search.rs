@@ -11,11 +11,10 @@
 use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
-pub(crate) use self::foot::{faces_point, foot_on, spread};
+pub(crate) use self::foot::{diagonal, faces_point, foot_on, is_beside_rim, spread};
 use self::group::Group;
 use self::guess::Guesses;
 use self::kept::Kept;
-use self::way::diagonal;
 pub(crate) use self::way::{Way, is_between};
 use crate::rest::{BLOCK, Rest};
 use crate::sight::View;
@@ -166,7 +165,9 @@ impl Search {
         }
         let found = self
             .closest((places, faces), view, x, f64::INFINITY)
-            .filter(|(foot, face)| faces_point(foot, face));
+            .filter(|(foot, face)| {
+                faces_point(foot, face, view.is_none(), || diagonal(places, face))
+            });
         if let (true, Some((foot, face)), Some(item)) = (self.watches, &found, self.kept[slot].face)
             && is_between(places, foot, face)
         {

@@ -19,12 +19,14 @@ use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Projection};
 use rayon::prelude::*;
 
+use self::across::Across;
 use self::lists::{Incidence, Lists};
 pub use self::parts::Parts;
 pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
 
+mod across;
 mod along;
 mod lists;
 mod parts;
@@ -53,6 +55,8 @@ pub struct Sight {
     around: Lists,
     /// Faces of the target beside each point, ascending.
     beside: Lists,
+    /// Faces of the target across the edges of each.
+    across: Across,
     /// Largest penetration of each point, m.
     depth: Vec<f64>,
     /// Gap beyond which nothing is looked for, m.
@@ -132,6 +136,7 @@ impl Sight {
             faces: secondary.to_vec(),
             around,
             beside,
+            across: Across::new(target),
             reach: if itself { 4.0 * largest } else { f64::INFINITY },
             sides: None,
             round,
@@ -178,6 +183,7 @@ impl Sight {
         }
         Sight {
             beside,
+            across: self.across.of_some(kept),
             parts,
             ..self.clone()
         }
@@ -194,6 +200,11 @@ impl Sight {
         self.reach.is_finite()
     }
 
+    /// Parts that do not touch each other, if there are any.
+    pub(crate) fn parts(&self) -> Option<&Parts> {
+        self.parts.as_ref()
+    }
+
     /// Which points tell a contact that two would tell.
     pub(crate) fn sides(&self) -> Option<&Sides> {
         self.sides.as_ref()
@@ -202,6 +213,12 @@ impl Sight {
     /// Largest penetration that is a contact at some point, m.
     pub(crate) fn deepest(&self) -> f64 {
         self.depth.iter().fold(0.0, |most, depth| most.max(*depth))
+    }
+
+    /// The least penetration that is a contact at any point that sees anything, m.
+    pub(crate) fn least_depth(&self) -> f64 {
+        let depths = self.depth.iter().copied().filter(|depth| *depth > 0.0);
+        depths.fold(f64::INFINITY, f64::min)
     }
 
     /// The corners of some faces where they are, in the order of their numbers; of curved faces none.

@@ -19,6 +19,8 @@ pub(crate) struct OfContact {
     pub(crate) pushed: Pushed,
     /// The record with the step.
     pub(crate) passing: Largest,
+    /// Points that have passed what they face without a force.
+    pub(crate) passed: u64,
     /// See [`Step::jump`](crate::records::Step::jump).
     pub(crate) jump: [(f64, [f64; 3]); 2],
 }

@@ -50,6 +50,12 @@ pub struct ContactRecord {
     /// Largest depth of a point behind the plane that it faced in a step, at its start or at its end, m; by the node of the point. Where it
     /// passed what it faced that is the depth of its start, seen from the far side. Of sides that are paired anew.
     pub passing: Largest,
+    /// How often a point has passed what it faces in a step without a force, to where it is not seen behind it
+    /// ([`Contact::passed`](carom_contact::Contact::passed)).
+    pub passed: u64,
+    /// Largest depth of a node of the primary side behind the secondary one, m: between its points, where no force keeps it out. Of sides that
+    /// are paired anew, at the looks of [`Smallness`].
+    pub between: Largest,
     /// Energy lost in crush so far, J: what it took to crush the points, less what they can give back.
     pub energy_crushed: f64,
     /// Energy that friction has taken so far, J.

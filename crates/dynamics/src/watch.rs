@@ -1,8 +1,8 @@
 //! The looks of a driver at what is assumed small ([`crate::small`]).
 
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::Distortion;
-use carom_contact::{Rows, Search, Target};
+use carom_bodies::{Body, Distortion};
+use carom_contact::{Contact, Rows, Search, Target};
 use carom_mesh::Face;
 
 use crate::state::State;
@@ -12,10 +12,22 @@ use crate::system::System;
 #[derive(Debug)]
 pub(crate) struct Watch {
     contacts: Vec<Option<Watched>>,
+    between: Vec<Option<Between>>,
     rows: Rows,
     /// No displacement; empty where no contact is watched.
     still: Vec<f64>,
 }
+
+/// A contact seen from its other side.
+#[derive(Debug)]
+struct Between {
+    contact: Contact,
+    search: Search,
+}
+
+/// Depth up to which nodes of the primary side are looked for behind the secondary one, in sizes of the smallest element normal to both:
+/// more than the whole element from which on a penetration is bad, by what bodies go from one look to the next.
+const DEPTH: f64 = 2.25;
 
 /// A contact of small sliding.
 #[derive(Debug)]
@@ -36,8 +48,10 @@ impl Watch {
         let mut still = Vec::new();
         let contacts = 0..system.contacts.len();
         let watched = contacts.map(|k| Watched::new(system, k, &mut still));
+        let contacts = 0..system.contacts.len();
         Watch {
             contacts: watched.collect(),
+            between: contacts.map(|k| Between::new(system, k)).collect(),
             rows: Rows::default(),
             still,
         }
@@ -72,6 +86,11 @@ impl Watch {
                 found.strain.take(strain.value, strain.cell, time);
             }
         }
+        for (k, between) in self.between.iter_mut().enumerate() {
+            if let Some(between) = between {
+                between.look(system, k, &mut self.rows, state);
+            }
+        }
         for (k, watched) in self.contacts.iter_mut().enumerate() {
             if let Some(watched) = watched {
                 if system.contacts[k].moves() {
@@ -79,6 +98,35 @@ impl Watch {
                 }
                 watched.look(system, k, &mut self.rows, state);
             }
+        }
+    }
+}
+
+impl Between {
+    /// None of contacts that have no other side to look from, and where deleted elements leave it.
+    fn new(system: &System, number: usize) -> Option<Between> {
+        let touching = system.touching[number].iter();
+        let mut bodies = touching.map(|&body| &system.bodies[body]);
+        if bodies.any(Body::has_deletion) {
+            return None;
+        }
+        let depth = DEPTH * system.depth_of_elements(number);
+        let faces = &system.secondary_faces[number];
+        let contact = system.contacts[number].reversed(faces, &system.x, depth)?;
+        Some(Between {
+            contact,
+            search: Search::default(),
+        })
+    }
+
+    fn look(&mut self, system: &System, number: usize, rows: &mut Rows, state: &mut State) {
+        let places = system.places(state.time, &state.motion.u, &state.motion.frames);
+        rows.clear();
+        self.contact.pair(&places, &mut self.search, rows);
+        let deepest = &mut state.records.contacts[number].between;
+        for (k, point) in self.contact.points.iter().enumerate() {
+            let node = system.mesh_node[point.node() as usize];
+            deepest.take(-rows.gap(k), node, state.time);
         }
     }
 }

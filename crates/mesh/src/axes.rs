@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use carom_elements::Kind;
 
-use crate::{ElementId, Error, Face, Group, Mesh, Surface, face_nodes};
+use crate::{ElementId, Error, Face, Group, Mesh, Rim, Surface, face_nodes};
 
 /// Cosine of the angle between two faces of a shell beyond which the edge between them is sharp: 40°, as for its directors.
 const FOLD: f64 = 0.766;
@@ -65,6 +65,7 @@ impl Surface {
                 parent: face.parent,
                 axis: [0.0; 3],
                 radius: Some(radii.fold(0.0, f64::max)),
+                rim: Rim::default(),
             }
         };
         sharp.map(line).collect()
@@ -111,6 +112,7 @@ impl Surface {
                 parent,
                 axis: [0.0; 3],
                 radius: radius(parent),
+                rim: Rim::default(),
             })
         };
         Ok(Surface {

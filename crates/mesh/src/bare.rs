@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use crate::surface::{axis, key, nodes_of};
-use crate::{ElementId, Face, Mesh};
+use crate::{ElementId, Face, Mesh, Rim};
 
 impl Mesh {
     /// The faces that cells have in common with deleted ones, each as a face of the cell that is left, its normal out of it: in the order
@@ -33,6 +33,7 @@ impl Mesh {
                         parent: cell,
                         axis: axis(self, cell, number),
                         radius: None,
+                        rim: Rim::default(),
                     });
                 }
             }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use carom_elements::Kind;
 
-use crate::{ElementId, Error, Face, Group, Mesh, Surface, face_nodes};
+use crate::{ElementId, Error, Face, Group, Mesh, Rim, Surface, face_nodes};
 
 impl Surface {
     /// The surface made of the facets of a group as they stand, whatever cells there are: normals follow from the order of
@@ -32,6 +32,7 @@ impl Surface {
                 parent: id,
                 axis: [0.0; 3],
                 radius: None,
+                rim: Rim::default(),
             }
         };
         let faces: Vec<Face> = facets.elements.iter().map(face).collect();

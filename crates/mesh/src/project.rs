@@ -210,8 +210,8 @@ fn on_triangle(x: &[[f64; 3]], point: &[f64; 3]) -> ([f64; 3], [f64; 3]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ElementId;
     use crate::random::Random;
+    use crate::{ElementId, Rim};
 
     fn face(kind: Kind, axis: [f64; 3]) -> Face {
         Face {
@@ -220,6 +220,7 @@ mod tests {
             parent: ElementId { block: 0, index: 0 },
             axis,
             radius: None,
+            rim: Rim::default(),
         }
     }
 

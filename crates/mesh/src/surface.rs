@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use carom_elements::{Element, Kind, MAX_FACE_NODES, MAX_NODES, map};
 
 use crate::mesh::gather;
-use crate::{ElementId, Error, Group, Mesh};
+use crate::{ElementId, Error, Group, Mesh, Rim};
 
 /// Part of the boundary of a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +35,8 @@ pub struct Face {
     /// Distance of the surface from the face, m: of the axis of a beam, of a point of it, or of the middle of a shell all around it, of a
     /// point with an axis along that. `None` where the face is the surface itself.
     pub radius: Option<f64>,
+    /// Its edges and corners at the rim of the surface; none where nobody has looked.
+    pub rim: Rim,
 }
 
 impl Face {
@@ -113,6 +115,7 @@ impl Surface {
                     parent: cell,
                     axis: axis(mesh, cell, i),
                     radius: None,
+                    rim: Rim::default(),
                 });
             }
         }
@@ -139,6 +142,7 @@ impl Surface {
                 parent: cell,
                 axis: axis(mesh, cell, number),
                 radius: None,
+                rim: Rim::default(),
             })
         };
         let mut cells_of = BTreeMap::new();
@@ -170,6 +174,7 @@ impl Surface {
             parent,
             axis,
             radius: None,
+            rim: Rim::default(),
         };
         let mut nodes: Vec<u32> = points.iter().map(|(node, _)| *node).collect();
         nodes.sort_unstable();
@@ -465,6 +470,7 @@ mod tests {
             parent: ElementId { block: 0, index: 0 },
             axis: [0.0; 3],
             radius: None,
+            rim: Rim::default(),
         };
         let faces = vec![face];
         (mesh, Surface { faces, nodes })

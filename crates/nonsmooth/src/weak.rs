@@ -146,7 +146,7 @@ impl Weak {
 mod tests {
     use carom_contact::Point;
     use carom_elements::Kind;
-    use carom_mesh::{ElementId, Face, face_nodes};
+    use carom_mesh::{ElementId, Face, Rim, face_nodes};
 
     use super::*;
 
@@ -170,6 +170,7 @@ mod tests {
             parent: ElementId { block: 0, index: 0 },
             axis: [0.0; 3],
             radius: None,
+            rim: Rim::default(),
         };
         let faces = [
             face(Kind::Tri3, &[0, 1, 2]),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use carom_bodies::Kinematics;
 use carom_contact::law::Level;
 use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
-use carom_mesh::{ElementId, Face, Mesh, Surface};
+use carom_mesh::{ElementId, Face, Mesh, Rim, Surface};
 
 use crate::error::Error;
 use crate::model::{Model, ModelContact, ModelTarget};
@@ -241,6 +241,7 @@ pub(crate) fn numbered(
         ModelTarget::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
         ModelTarget::Surface(surface) => {
             let mut faces = faces(surface);
+            Rim::mark(&mut faces, |node| x[node as usize], |node| node);
             let edges = lines.iter().filter(|line| !surface.faces.contains(line));
             faces.extend(edges.map(|line| renumbered(line, number)));
             Target::Surface(faces)

@@ -146,6 +146,11 @@ impl Placed<'_> {
         }
     }
 
+    /// Place at time 0 of the particle that is at a place x in m.
+    pub(crate) fn back(&self, x: &[f64; 3]) -> [f64; 3] {
+        self.pose.as_ref().map_or(*x, |pose| pose.back(x))
+    }
+
     /// Velocity in m/s of the obstacle's particle at a place x in m; the obstacle is taken as filling all space, so x may
     /// lie off its surface.
     pub fn velocity(&self, x: &[f64; 3]) -> [f64; 3] {
@@ -162,7 +167,7 @@ impl Placed<'_> {
 }
 
 impl Shape {
-    fn distance(&self, x: &[f64; 3]) -> Distance {
+    pub(crate) fn distance(&self, x: &[f64; 3]) -> Distance {
         match self {
             Shape::Plane(plane) => plane.distance(x),
             Shape::Sphere(sphere) => sphere.distance(x),

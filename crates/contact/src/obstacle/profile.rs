@@ -47,6 +47,17 @@ impl Profile {
         }
     }
 
+    /// Where the material must stay.
+    pub(crate) fn side(&self) -> Side {
+        self.side
+    }
+
+    /// The least distance of its points from the axis, m.
+    pub(crate) fn least_radius(&self) -> f64 {
+        let radii = self.points.iter().map(|[_, radius]| *radius);
+        radii.fold(f64::INFINITY, f64::min)
+    }
+
     /// Gap, normal and Hessian at a place x in m: those of the distance to the closest place of the curve (the first of
     /// equals). `∂²g/∂x² = -κ / (1 - κ g) t ⊗ t` with the curvature κ of the curve towards the normal and its tangent t.
     pub fn distance(&self, x: &[f64; 3]) -> Distance {

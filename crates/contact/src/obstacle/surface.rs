@@ -1,9 +1,12 @@
 //! A rigid surface made of faces of a mesh.
 
+use std::collections::BTreeMap;
+
 use carom_elements::{MAX_FACE_NODES, map};
-use carom_mesh::{Bounds, BoxTree, Face, Mesh, Projection, Surface, project};
+use carom_mesh::{Bounds, BoxTree, Face, Mesh, Projection, Rim, Surface, project};
 
 use super::distance::Distance;
+use crate::passage::passed_face;
 use crate::search::faces_point;
 
 /// Rigid surface of faces: the material must stay on the side to which their normals point.
@@ -29,9 +32,15 @@ impl RigidSurface {
             }
             face
         };
-        let faces: Vec<Face> = surface.faces.iter().map(renumbered).collect();
+        let mut faces: Vec<Face> = surface.faces.iter().map(renumbered).collect();
         let nodes = surface.nodes.iter();
         let x: Vec<[f64; 3]> = nodes.map(|&node| mesh.nodes[node as usize]).collect();
+        let first = firsts(&x);
+        Rim::mark(
+            &mut faces,
+            |node| x[node as usize],
+            |node| first[node as usize],
+        );
         let boxes: Vec<Bounds> = faces
             .iter()
             .map(|face| Bounds::of_face(face.kind, &places(&x, face)[..face.corners().len()]))
@@ -48,6 +57,27 @@ impl RigidSurface {
         (&self.faces, &self.x)
     }
 
+    /// The least diagonal of the boxes of its faces, m.
+    pub(crate) fn least_size(&self) -> f64 {
+        let sizes = self.faces.iter().map(|face| {
+            let places = places(&self.x, face);
+            Bounds::of_face(face.kind, &places[..face.corners().len()]).diagonal()
+        });
+        sizes.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The normal where the straight way between two places passes a face from before it to behind it, if it does.
+    pub(crate) fn passed(&self, from: &[f64; 3], to: &[f64; 3]) -> Option<[f64; 3]> {
+        let mut found = Vec::new();
+        self.tree
+            .overlapping(&Bounds::of(&[*from, *to]), &mut found);
+        found.iter().find_map(|&item| {
+            let face = &self.faces[item as usize];
+            let places = places(&self.x, face);
+            passed_face((face, &places[..face.corners().len()]), [from, to])
+        })
+    }
+
     /// Gap over the closest face (the first of equals) of a place x in m; a place beyond the rim faces nothing.
     pub fn distance(&self, x: &[f64; 3]) -> Distance {
         let foot = |item: u32| {
@@ -59,8 +89,11 @@ impl RigidSurface {
             .tree
             .closest(x, f64::INFINITY, 0.0, |item| foot(item).distance);
         let found = closest.map(|(item, _)| (foot(item), &self.faces[item as usize]));
+        let size = |face: &Face| {
+            Bounds::of_face(face.kind, &places(&self.x, face)[..face.corners().len()]).diagonal()
+        };
         match found {
-            Some((foot, face)) if faces_point(&foot, face) => Distance {
+            Some((foot, face)) if faces_point(&foot, face, true, || size(face)) => Distance {
                 gap: foot.gap,
                 normal: foot.normal,
                 hessian: self.hessian(&foot, face),
@@ -106,6 +139,15 @@ impl RigidSurface {
         }
         hessian
     }
+}
+
+/// Of each node the first at the same place, bit for bit: a rigid surface does not part where faces share none.
+fn firsts(x: &[[f64; 3]]) -> Vec<u32> {
+    let mut first = BTreeMap::new();
+    let numbered = x.iter().zip(0..);
+    numbered
+        .map(|(x, node)| *first.entry(x.map(|x| (x + 0.0).to_bits())).or_insert(node))
+        .collect()
 }
 
 fn places(x: &[[f64; 3]], face: &Face) -> [[f64; 3]; MAX_FACE_NODES] {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::search::faces::{Question, Scratch};
 use crate::search::kept::Kept;
+use crate::sight::View;
 use crate::{Contact, Places, Search, Target};
 
 /// Distance up to which clearances are told, over the largest at which anything is looked at: further, a look costs more than it saves.
@@ -69,6 +70,9 @@ impl Contact {
                 faces: tree.in_reach((places, faces), of, [limit, motion]),
                 clearance: 0.0,
             };
+            if let Some(view) = view {
+                add_across(&mut found.faces, &view);
+            }
             if found.faces.is_empty() {
                 found.clearance = tree
                     .rest_of((places, faces), of, [limit, FARTHER * self.limit(k, most)])
@@ -98,4 +102,14 @@ impl Contact {
         let sight = self.sight.iter();
         sight.flat_map(move |sight| sight.faces_around(point))
     }
+}
+
+/// Adds the faces across the edges of some, with the same bound of the motion: they say whether a point beyond an edge is beside the body.
+fn add_across(faces: &mut Vec<(u32, f64)>, view: &View) {
+    for k in 0..faces.len() {
+        let (face, rest) = faces[k];
+        faces.extend(view.across(face).map(|other| (other, rest)));
+    }
+    faces.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    faces.dedup_by_key(|(face, _)| *face);
 }

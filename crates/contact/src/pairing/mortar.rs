@@ -31,6 +31,7 @@ use super::overlap::{Cell, Sample, cells};
 use super::share::{Quadrature, Share};
 use super::stencil::Stencil;
 use crate::mortar::{Basis, CORNERS, Mortar, linear};
+use crate::search::is_beside_rim;
 use crate::{Contact, Obstacle, Places, Point, Search, Target};
 
 /// Part of its area that a multiplier must have opposite it to face anything.
@@ -230,7 +231,8 @@ impl<'a> Sweep<'a> {
                 let foot = project(face, x, &place);
                 let way = Vec3::from(foot.point) - Vec3::from(place);
                 let ahead = !both || outward.dot(&way) > 0.0;
-                if ahead && sees(&foot) {
+                let beside = is_beside_rim(&foot, face, || Bounds::of(x).diagonal());
+                if ahead && !beside && sees(&foot) {
                     let stencil = match &mut first {
                         Some(stencil) => {
                             stencil.shift(&point, &place, &foot);

@@ -15,7 +15,7 @@ pub struct Near<'a> {
     pub first: usize,
     /// Largest gap that is looked at, m.
     pub reach: f64,
-    /// The step before this pairing, where no gap counts that cannot have closed since or close in the next; none where all within reach do.
+    /// The step of this pairing; none where all within reach count, however far nodes have moved.
     pub step: Option<Step<'a>>,
     /// Whether a point, by its number in the contact, was inside at the last step: it may then be so at any depth.
     pub inside: &'a (dyn Fn(usize) -> bool + Sync),
@@ -35,11 +35,15 @@ pub struct OwnPart<'a> {
     pub nodes: &'a [u32],
 }
 
-/// The step before a pairing of near points, at whose end that is.
+/// The step of a pairing of near points.
 #[derive(Clone, Copy)]
 pub struct Step<'a> {
-    /// Where nodes were at its start, if that was not the last pairing.
-    pub start: Option<&'a Places<'a>>,
+    /// Where nodes were at its start.
+    pub start: &'a Places<'a>,
+    /// Whether the last pairing was not that of the step before.
+    pub begins: bool,
+    /// Whether this is its end: no gap counts that cannot have closed since the start or close in the next step.
+    pub at_end: bool,
 }
 
 /// Gaps that matter in a pairing, m.
@@ -159,15 +163,19 @@ impl Contact {
             self.points.len()
         };
         search.begin();
-        if let Some(Step { start: Some(start) }) = near.step {
-            self.travel(&mut rest, (units, near.own), start);
+        if let Some(step) = near.step
+            && (step.begins || !rest.is_for(units))
+        {
+            self.travel(&mut rest, (units, near.own), step.start);
         }
         self.travel(&mut rest, (units, near.own), places);
         let most = near.reach;
         let reach = match (near.step, near.own) {
-            (Some(_), None) => self.reach(rest.motion(), most),
+            (Some(step), None) if step.at_end => self.reach(rest.motion(), most),
+            (Some(_), None) if !self.moves() => Rest::least_reach(rest.motion(), most),
             _ => most,
         };
+        let most = most.max(reach);
         let reach = Reach {
             near: reach,
             watched: rest.watch(reach, most),
@@ -275,8 +283,8 @@ impl Contact {
         radii.fold(0.0, f64::max)
     }
 
-    /// Gap up to which points count in a pairing one step after the last, m: at most `most`. `motion`: the most that a node of either side has
-    /// moved in the step, m ([`Search::motion`]).
+    /// Gap up to which points count in a pairing one step after the last, m: at most `most`, or what both sides can have come closer by. `motion`:
+    /// the most that a node of either side has moved in the step, m ([`Search::motion`]).
     pub fn reach(&self, motion: f64, most: f64) -> f64 {
         match self.moves() {
             true => most,

@@ -113,7 +113,7 @@ fn add_row(places: &Places, point: &Point, foot: &Projection, face: &Face, rows:
 mod tests {
     use carom_algebra::unknowns::Unknowns;
     use carom_elements::Kind;
-    use carom_mesh::{ElementId, face_nodes};
+    use carom_mesh::{ElementId, Rim, face_nodes};
 
     use super::*;
     use crate::law::Displacement;
@@ -132,6 +132,7 @@ mod tests {
                 parent: ElementId { block: 0, index: i },
                 axis: [0.0; 3],
                 radius: None,
+                rim: Rim::default(),
             }
         });
         (x, faces.collect())

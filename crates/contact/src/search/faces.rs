@@ -4,7 +4,7 @@ use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, QUADS};
 
 use super::corners::Taken;
-use super::foot::{faces_point, foot_on, hull};
+use super::foot::{diagonal, faces_point, foot_on, hull};
 use super::kept::{Guess, Kept, Query, squared};
 use crate::sight::{Corners, View};
 use crate::{Places, Sight};
@@ -196,7 +196,9 @@ impl FaceTree {
             count += 1;
             let foot = foot_on(places, faces, item, x).0;
             let seen = view.is_none_or(|view| {
-                view.shows(item, &foot, &self.normals) && faces_point(&foot, face)
+                view.shows(item, &foot, &self.normals)
+                    && faces_point(&foot, face, false, || diagonal(places, face))
+                    && !view.is_over_neighbour((item, &foot), x, (places, faces))
             });
             if !seen {
                 return f64::INFINITY;

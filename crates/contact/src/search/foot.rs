@@ -3,7 +3,12 @@
 use carom_elements::Kind;
 use carom_mesh::{Bounds, Face, Projection, project};
 
+use super::kept::squared;
 use crate::Places;
+
+/// Part of the size of a face within which two places are the same, and roundings of a coordinate, of which a place and a foot have some.
+const SAME: f64 = 1e-9;
+const ULPS: f64 = 16.0;
 
 /// The closest point of one of the faces.
 pub(crate) fn foot_on<'a>(
@@ -35,20 +40,54 @@ pub(crate) fn hull(places: &Places, face: &Face) -> Bounds {
     Bounds::of_face(face.kind, &places.of_face(face)[..face.corners().len()])
 }
 
-/// Whether a point faces the face on which its closest point lies: whether the way to it runs sideways by no more than
-/// it runs along the normal.
-pub(crate) fn faces_point(foot: &Projection, face: &Face) -> bool {
+/// Whether a point faces the face on which its closest point lies.
+///
+/// On an edge where the surface goes on: if the way to the point runs sideways by no more than it runs along the normal, or if the closest point
+/// is that of `all` faces and the point is behind them, in a fold. At the rim of the surface: if it does not run sideways, since a point beyond
+/// the rim is beside the surface, above its plane or below it; on a sharp ridge so is one above it. `size`: of the face, m.
+pub(crate) fn faces_point(
+    foot: &Projection,
+    face: &Face,
+    all: bool,
+    size: impl FnOnce() -> f64,
+) -> bool {
     if foot.inside || face.kind == Kind::Point1 {
         return true;
     }
-    let sideways = (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt();
-    // Matching rims coincide only to rounding: a foot that close to the rim counts as inside.
-    let rounding = 1e-9
-        * foot
-            .point
-            .iter()
-            .fold(1e-300_f64, |size, x| size.max(x.abs()));
-    sideways <= foot.gap.abs().max(rounding)
+    let sideways = sideways(foot);
+    let rim = face.rim;
+    let ends =
+        rim.holds(face.kind, &foot.xi) || foot.gap > 0.0 && rim.is_ridge(face.kind, &foot.xi);
+    let along = match foot.gap < 0.0 && all {
+        _ if ends => 0.0,
+        true => f64::INFINITY,
+        false => foot.gap.abs(),
+    };
+    sideways <= along || sideways <= rounding(foot, size())
+}
+
+/// Whether a point is below the plane of a face and beyond the rim of the surface there.
+pub(crate) fn is_beside_rim(foot: &Projection, face: &Face, size: impl FnOnce() -> f64) -> bool {
+    foot.gap < 0.0 && face.rim.holds(face.kind, &foot.xi) && !faces_point(foot, face, true, size)
+}
+
+/// How far the way from a foot to its point runs beside the normal, m.
+fn sideways(foot: &Projection) -> f64 {
+    (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt()
+}
+
+/// Distance beside a face of this size (m) that is rounding, m: matching rims coincide only to rounding. That of a length is the root of
+/// what two squares lose that cancel.
+fn rounding(foot: &Projection, size: f64) -> f64 {
+    let far = foot.point.iter().fold(0.0_f64, |far, x| far.max(x.abs()));
+    let root = foot.distance * f64::EPSILON.sqrt();
+    (SAME * size).max(ULPS * f64::EPSILON * far).max(root)
+}
+
+/// Diagonal of the box around a face, m.
+pub(crate) fn diagonal(places: &Places, face: &Face) -> f64 {
+    let bounds = hull(places, face);
+    squared(&bounds.min, &bounds.max).sqrt()
 }
 
 /// The most that Σ |N_a| is on a face: places between its nodes move by that times the motion of the nodes at most.

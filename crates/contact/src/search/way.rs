@@ -2,8 +2,7 @@
 
 use carom_mesh::{Face, Projection};
 
-use super::foot::hull;
-use super::kept::squared;
+use super::foot::diagonal;
 use crate::Places;
 
 /// Returns of a point, within one step, to a face that it has left in it, after which it stays with that face.
@@ -47,10 +46,4 @@ impl Way {
 /// Whether a point is so near to its face that it may go to and fro between that and another one.
 pub(crate) fn is_between(places: &Places, foot: &Projection, face: &Face) -> bool {
     foot.gap.abs() < NEAR * diagonal(places, face)
-}
-
-/// Diagonal of the box of a face, m.
-pub(super) fn diagonal(places: &Places, face: &Face) -> f64 {
-    let bounds = hull(places, face);
-    squared(&bounds.min, &bounds.max).sqrt()
 }

@@ -140,7 +140,7 @@ pub(super) fn until_behind(corners: &Corners, (x, depth): (&[f64; 3], f64)) -> f
 #[cfg(test)]
 mod tests {
     use carom_algebra::unknowns::Unknowns;
-    use carom_mesh::{ElementId, face_nodes, project};
+    use carom_mesh::{ElementId, Rim, face_nodes, project};
     use carom_testing::Random;
 
     use super::*;
@@ -156,6 +156,7 @@ mod tests {
             parent: ElementId { block: 0, index: 0 },
             axis: [0.0; 3],
             radius: None,
+            rim: Rim::default(),
         };
         let unknowns = Unknowns::translations(3, 4);
         let mut deep = 0;

@@ -5,7 +5,7 @@ use carom_algebra::pattern::Cliques;
 use carom_contact::law::Displacement;
 use carom_contact::{Contact, Integration, Law, Pairing, Places, Point, Search, Sliding, Target};
 use carom_elements::Kind;
-use carom_mesh::{ElementId, Face, face_nodes};
+use carom_mesh::{ElementId, Face, Rim, face_nodes};
 
 pub fn face(kind: Kind, nodes: &[u32]) -> Face {
     Face {
@@ -14,6 +14,7 @@ pub fn face(kind: Kind, nodes: &[u32]) -> Face {
         parent: ElementId { block: 0, index: 0 },
         axis: [0.0; 3],
         radius: None,
+        rim: Rim::default(),
     }
 }
 

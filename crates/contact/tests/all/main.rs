@@ -10,6 +10,7 @@ mod fixture;
 mod mortar;
 mod moving;
 mod pairs;
+mod rims;
 mod round;
 mod round_mortar;
 mod search;

@@ -3,7 +3,7 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::{Contact, Frames, Places, Point, Rows, Search, Target};
 use carom_elements::Kind;
-use carom_mesh::{Face, project};
+use carom_mesh::{Face, Rim, project};
 use carom_testing::Random;
 
 use crate::fixture::{contact, face};
@@ -22,10 +22,11 @@ impl Scene {
     fn new(kind: Kind, side: u32, points: u32) -> Scene {
         let dim = kind.table().dim + 1;
         let mut random = Random(11);
-        let (mut x, faces) = match dim {
+        let (mut x, mut faces) = match dim {
             2 => strip(side),
             _ => sheet(kind, side),
         };
+        Rim::mark(&mut faces, |node| x[node as usize], |node| node);
         let first = x.len() as u32;
         for _ in 0..points {
             let place = [0; 3].map(|_| random.between(-0.3, 1.3) * f64::from(side));
@@ -66,15 +67,16 @@ impl Scene {
         let feet = self.faces.iter().map(|face| {
             let positions: Vec<[f64; 3]> =
                 face.corners().iter().map(|&node| places.of(node)).collect();
-            project(face, &positions, &x)
+            (project(face, &positions, &x), face)
         });
-        let closest = feet.reduce(|best, foot| match foot.distance < best.distance {
+        let closest = feet.reduce(|best, foot| match foot.0.distance < best.0.distance {
             true => foot,
             false => best,
         });
-        let foot = closest.unwrap();
+        let (foot, face) = closest.unwrap();
         let sideways = (foot.distance.powi(2) - foot.gap.powi(2)).max(0.0).sqrt();
-        match foot.inside || sideways <= foot.gap.abs() {
+        let goes_on = !face.rim.holds(face.kind, &foot.xi);
+        match foot.inside || goes_on && (foot.gap < 0.0 || sideways <= foot.gap.abs()) {
             true => (foot.gap, foot.normal),
             false => (f64::INFINITY, [0.0; 3]),
         }

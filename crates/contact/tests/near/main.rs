@@ -7,7 +7,7 @@ use carom_contact::{
     Search, Shape, Sight, Sliding, Sphere, Step, Target,
 };
 use carom_elements::Kind;
-use carom_mesh::{ElementId, Face, face_nodes};
+use carom_mesh::{ElementId, Face, Rim, face_nodes};
 use carom_testing::Random;
 
 mod halves;
@@ -47,6 +47,7 @@ impl Scene {
                 parent: ElementId { block: 0, index: i },
                 axis: [0.0; 3],
                 radius: None,
+                rim: Rim::default(),
             });
         }
     }
@@ -165,12 +166,12 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
         if lost {
             search = Search::default();
         }
-        // eight times the largest motion of a node, from a 64th of the reach on
+        // eight times the largest motion of a node, from a 64th of the reach on; beyond the reach no more than four times
         let motions = u.chunks(3).zip(before.chunks(3));
         let motions = motions.map(|(u, v)| u.iter().zip(v).map(|(u, v)| (u - v).powi(2)).sum());
         let largest = motions.fold(0.0, |most: f64, square: f64| most.max(square));
         let reach = match way.short && !contact.moves() && !way.some {
-            true => (8.0 * largest.sqrt()).clamp(REACH / 64.0, REACH),
+            true => (8.0 * largest.sqrt()).clamp(REACH / 64.0, REACH.max(4.0 * largest.sqrt())),
             false => REACH,
         };
         all.clear();
@@ -193,7 +194,9 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
             first: 0,
             reach: REACH,
             step: way.short.then_some(Step {
-                start: lost.then_some(&start),
+                start: &start,
+                begins: lost,
+                at_end: true,
             }),
             inside: &|point| gaps[point] < 0.0,
             initial: &initial,

@@ -10,6 +10,9 @@ use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
 
+/// Entry of a row of unit normals that is no rounding of a direction.
+const CLEARLY: f64 = 1e-3;
+
 impl Driver {
     /// The configuration in which a contact is paired.
     pub(super) fn paired_at(&self, number: usize) -> Paired {
@@ -190,7 +193,7 @@ impl Driver {
     /// Whether a point takes part, where its law says so before the forces.
     pub(super) fn told(&self, point: usize) -> Option<bool> {
         let gap = self.pairing.rows.gap(point);
-        if gap == f64::INFINITY {
+        if gap == f64::INFINITY || self.is_held(point) {
             return Some(false);
         }
         let law = self.law(self.system.point(point).0);
@@ -201,6 +204,28 @@ impl Driver {
         }
         let rate = self.rate_at_start(point);
         told(law, (gap, rate), self.moves(point), tolerance)
+    }
+
+    /// Whether no force moves a point, what its row moves being held but for rounding, and its law does not say the force either: the support
+    /// takes what presses it, and no force of the contact is decided by anything.
+    fn is_held(&self, point: usize) -> bool {
+        let (unknowns, row) = self.pairing.rows.row(point);
+        let (mut free, mut whole) = (0.0, 0.0);
+        for (&unknown, n) in unknowns.iter().zip(row) {
+            if !self.system.fixed[unknown as usize] {
+                if n.abs() > CLEARLY {
+                    return false;
+                }
+                free += n * n;
+            }
+            whole += n * n;
+        }
+        if free > f64::EPSILON * whole || unknowns.is_empty() {
+            return false;
+        }
+        let law = self.law(self.system.point(point).0);
+        let relation = law.get().relation(Status::Closed, &self.local(point, 0.0));
+        relation.compliance == 0.0
     }
 
     /// Takes the multipliers of the weak forms that belong to the forces as they stand.

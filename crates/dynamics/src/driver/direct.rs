@@ -46,6 +46,7 @@ impl Driver {
 
     /// Tells that an attempt of another kind begins.
     pub(super) fn leave_direct(&mut self) {
+        self.passage.forget();
         if let Some(mut direct) = self.direct.take() {
             self.forget_step(&mut direct);
             self.direct = Some(direct);

@@ -191,7 +191,7 @@ impl Far {
         let sees = self.contacts[number]
             .as_ref()
             .is_some_and(|own| own.depth.is_some());
-        if self.are_apart(number, reach, places) {
+        if self.are_apart(number, reach, (places, None)) {
             contact.append_apart(places.dim(), search, pairing);
         } else if sees {
             contact.append_near(places, search, (reach, inside), pairing);
@@ -200,15 +200,32 @@ impl Far {
         }
     }
 
+    /// The most that a place on the sides of a contact has moved since the start of the step that [`Far::are_apart`] was given last, m; none of
+    /// contacts that look for all points.
+    pub(super) fn way(&self, number: usize) -> Option<f64> {
+        let contact = self.contacts[number].as_ref()?;
+        let ways = contact.sides.map(|side| self.sides[side].way);
+        Some(contact.spread * ways[0].max(ways[1]))
+    }
+
     /// Whether the sides of a contact that does not look for what is far are further apart at a configuration than points within
-    /// `reach` (m) can be: a foot may lie as far sideways as along the normal.
-    pub(super) fn are_apart(&mut self, number: usize, reach: f64, places: &Places) -> bool {
+    /// `reach` (m) can be, or than they can have come closer by since the start of the step, if that is given: a foot may lie as far sideways as
+    /// along the normal.
+    pub(super) fn are_apart(
+        &mut self,
+        number: usize,
+        reach: f64,
+        (places, start): (&Places, Option<&Places>),
+    ) -> bool {
         if !std::mem::replace(&mut self.placed, true) {
-            self.sides.iter_mut().for_each(|side| side.place(places));
+            let sides = self.sides.iter_mut();
+            sides.for_each(|side| side.place((places, start)));
         }
         let Some(contact) = &self.contacts[number] else {
             return false;
         };
+        let way = start.and_then(|_| self.way(number));
+        let reach = way.map_or(reach, |way| reach.max(AHEAD * way));
         let [one, other] = contact.sides.map(|side| &self.sides[side].bounds);
         let margin = SQRT_2 * (reach + contact.thick);
         let rounding = ROUNDING * (one.reach().max(other.reach()) + margin);
@@ -231,10 +248,20 @@ impl Reach {
 }
 
 impl Side {
-    fn place(&mut self, places: &Places) {
+    /// Takes the box of its nodes, and their ways since the start of the step if that is given.
+    fn place(&mut self, (places, start): (&Places, Option<&Places>)) {
         let mut bounds = Bounds::EMPTY;
+        let mut square = 0.0_f64;
         for &node in &self.nodes {
-            bounds = bounds.union(&Bounds::of(&[places.of(node)]));
+            let x = places.of(node);
+            bounds = bounds.union(&Bounds::of(&[x]));
+            if let Some(start) = start {
+                let from = start.of(node);
+                square = square.max((0..3).map(|i| (x[i] - from[i]).powi(2)).sum());
+            }
+        }
+        if start.is_some() {
+            self.way = square.sqrt();
         }
         let size = (0..3).map(|i| bounds.max[i] - bounds.min[i]);
         self.bounds = bounds.widened(self.bulge * size.fold(0.0, f64::max));

@@ -53,6 +53,7 @@ mod near;
 mod obstacles;
 pub mod paired;
 mod part_matrix;
+mod passage;
 mod pieces;
 mod predictor;
 mod projection;
@@ -112,6 +113,7 @@ use leapfrog::Direct;
 use linking::Multipliers;
 use mixing::Mixing;
 use paired::Manner;
+use passage::Passage;
 pub use ranked::RankShare;
 use refined::Refined;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
@@ -177,6 +179,7 @@ pub struct Driver {
     narrowed_for: u64,
     watch: Watch,
     active: Active,
+    passage: Passage,
     far: Far,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,

@@ -1,7 +1,7 @@
 //! The contacts of an explicit step: points that are far from what they face cost nothing.
 //!
 //! A point is near if its gap is within eight times the largest motion of a node in the step, more than two sides come closer by in two
-//! steps, and within a quarter of the mean diagonal of the faces of its contact. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
+//! steps, and within a quarter of the mean diagonal of the faces of its contact, or four times that motion where that is more. Others face nothing in such a step. Vectors over all points change at points alone that are near, or were so in the step
 //! before.
 
 use std::sync::Arc;
@@ -92,7 +92,17 @@ impl Driver {
             self.far.forget_places();
         }
         let reach = self.active.reach(number);
-        if self.far.are_apart(number, reach, &places) {
+        let start = system.places(
+            self.state.time,
+            &self.state.motion.u,
+            &self.state.motion.frames,
+        );
+        let is_end = row == map.displacement;
+        let far = &mut self.far;
+        if far.are_apart(number, reach, (&places, Some(&start))) {
+            if let (true, Some(way)) = (is_end, far.way(number)) {
+                self.passage.know(number, way);
+            }
             return search.rest_anew();
         }
         if contact.sliding == Sliding::Small && (initial.is_empty() || contact.moves()) {
@@ -107,23 +117,23 @@ impl Driver {
             contact.pair_fully(&reference, search, initial);
         }
         let gaps = &self.state.interface.gap;
-        let start = system.places(
-            self.state.time,
-            &self.state.motion.u,
-            &self.state.motion.frames,
-        );
         // motions of steps bound what can touch where points are paired with their ends
-        let step = (row == map.displacement).then_some(Step {
-            start: self.active.begins().then_some(&start),
-        });
+        let step = Step {
+            start: &start,
+            begins: self.active.begins(),
+            at_end: is_end,
+        };
         let near = Near {
             first,
             reach,
-            step,
+            step: Some(step),
             inside: &|point| gaps[first + point] < 0.0,
             initial,
             own,
         };
         contact.pair_near(&places, search, &near, pairing);
+        if is_end && !contact.moves() {
+            self.passage.know(number, search.motion());
+        }
     }
 }

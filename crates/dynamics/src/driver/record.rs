@@ -78,6 +78,7 @@ impl Driver {
             of.report.mixed = mixed;
             all.push(of);
         }
+        self.passage.forget();
         (self.of_contacts, self.nodal) = (all, nodal);
     }
 
@@ -107,13 +108,15 @@ impl Driver {
                 false => energy(new.crush[point]) - energy(old.crush[point]),
             }
         };
+        let passed = self.passed(k);
         OfContact {
-            near: points().next().is_some(),
+            near: passed > 0 || points().next().is_some(),
             motion: f64::INFINITY,
             work: self.contact_work(k) + points().map(|p| projected.work(p)).sum::<f64>(),
             crushed: points().map(crush).sum(),
             pushed: self.pushed(k),
             passing: self.passing(k),
+            passed,
             jump: [
                 total(points(), rows, |point| projected.impulse(point)),
                 total(points(), rows, changed),
@@ -151,6 +154,7 @@ impl Driver {
             let points = self.active.within(system.points_of(k));
             records.add((&system, k), (&step, points), velocities);
             records.contacts[k].passing = of.passing;
+            records.contacts[k].passed += of.passed;
             records.contacts[k].pushed = of.pushed;
             self.report.contacts[k].clone_from(&of.report);
         }

@@ -19,6 +19,7 @@ use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
+use super::passage::Passage;
 use super::record::motion_of;
 use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
@@ -113,6 +114,7 @@ impl Driver {
             narrowed_for: 0,
             watch: Watch::new(&system),
             active: Active::of(&system),
+            passage: Passage::of(&system),
             far: Far::of(&system, |_| true),
             candidates: Vec::new(),
             candidate_data: Vec::new(),

@@ -242,6 +242,7 @@ fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
         crushed,
         pushed,
         passing: _,
+        passed,
         jump: _,
     } = of;
     let vectors = [
@@ -261,6 +262,9 @@ fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
         visit(&mut number);
         *count = number as usize;
     }
+    let mut number = *passed as f64;
+    visit(&mut number);
+    *passed = number as u64;
     let sums = [
         &mut report.force,
         &mut report.friction_loss,

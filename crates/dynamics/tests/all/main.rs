@@ -5,6 +5,7 @@
 
 mod allocation;
 mod beams;
+mod beside;
 mod crossing;
 mod direct;
 mod discrete;
@@ -15,6 +16,7 @@ mod floating;
 mod flowing;
 mod fold;
 mod friction;
+mod held;
 mod impacts;
 mod initial;
 mod interface;
@@ -25,6 +27,7 @@ mod moments;
 mod momentum;
 mod mortar;
 mod newton;
+mod passage;
 mod quadrature;
 mod refusals;
 mod rolling;

@@ -3,7 +3,7 @@
 use carom_contact::Point;
 use carom_elements::Kind;
 use carom_laws::Status;
-use carom_mesh::{ElementId, Face, face_nodes};
+use carom_mesh::{ElementId, Face, Rim, face_nodes};
 use carom_nonsmooth::Weak;
 use carom_nonsmooth::interface::{Candidate, InterfaceProblem};
 use carom_testing::Random;
@@ -18,6 +18,7 @@ fn patch<const N: usize>(kind: Kind, nodes: &[[u32; N]], x: Vec<[f64; 3]>) -> Pa
         parent: ElementId { block: 0, index: 0 },
         axis: [0.0; 3],
         radius: None,
+        rim: Rim::default(),
     };
     let faces: Vec<Face> = nodes.iter().map(face).collect();
     (Point::of_faces(&faces, &x, |_| 1.0), x)

@@ -7,7 +7,7 @@ pub fn section(line: &str) -> &'static str {
         "energy-gain" | "scheme-made" | "contact-work" | "contact-loss" | "scheme-loss"
         | "scheme-energy" | "hourglass" => "plot-energy",
         "chatter" => "plot-status",
-        "penetration" | "passing" => "plot-gap",
+        "penetration" | "passing" | "crossing" | "penetration-between" => "plot-gap",
         "step-in-contact" | "force-error" | "not-finite" | "clipped-tension" => "plot-force",
         "angular-momentum-residual" => "balances",
         "small-strain-rotation" | "small-strain" => "model",

@@ -3,6 +3,7 @@
 
 mod chatter;
 mod convergence;
+mod crossing;
 mod doubts;
 mod energy;
 mod exact;
@@ -47,6 +48,8 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     tolerated::tension,
     penetration::of_contacts,
     penetration::of_passing,
+    crossing::of_contacts,
+    crossing::between,
     resolution::of_peaks,
     resolution::of_impulses,
     exact::force,
