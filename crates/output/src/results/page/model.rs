@@ -53,10 +53,6 @@ pub(crate) fn instants(results: &Results) -> Vec<(&Still, Vec<&'static str>)> {
             .1
             .push(kind);
     }
-    // it is the largest of all unless a solid or a shell has a larger one
-    if let Some(still) = kept.bent() {
-        of_step.entry(still.step).or_insert((still, Vec::new()));
-    }
     let stress = |still: &Still| still.largest[0].map_or(0.0, |largest| largest.value);
     let stressed = of_step
         .values()

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use carom_bodies::Body;
 use carom_dynamics::System;
 use serde::Serialize;
 
@@ -330,12 +329,6 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
         };
         let place = coordinates(&results.system, &maximum.place);
         let time = clock(results, maximum.time);
-        let mut bodies = results.system.bodies.iter();
-        let bends = bodies.any(|body| body.name() == maximum.body && bends(body));
-        let of = match of == cells && field == "von_mises" && bends {
-            true => "section of a cell",
-            false => of,
-        };
         let note = format!("{of}{body} at {place}, t = {time}; {kept}");
         Some(Tile {
             time: Some(maximum.time),
@@ -344,15 +337,6 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
         })
     };
     all.into_iter().filter_map(one).collect()
-}
-
-/// Whether bending varies the stress within the cells of a body.
-fn bends(body: &Body) -> bool {
-    match body {
-        Body::Beam(_) | Body::LargeBeam(_) | Body::Shell(_) => true,
-        Body::Reduced(reduced) => reduced.has_sections(),
-        _ => false,
-    }
 }
 
 /// A time; in a run that begins with a static stage, whose time is none, that since its end.

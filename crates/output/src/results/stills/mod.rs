@@ -1,5 +1,5 @@
 //! The instants that a run keeps for its pictures: at equal times, where a contact first closes, at the largest force, at the last
-//! release, at the largest stress of beams, and the end.
+//! release, and the end.
 //!
 //! The stress of all cells costs as much as some twenty explicit steps. Instants at equal times are therefore chosen beforehand. The
 //! largest force and the last release are not known before the end: their states are copied, seldom enough
@@ -8,11 +8,8 @@
 mod seen;
 mod still;
 
-use carom_bodies::Body;
 use carom_dynamics::{InterfaceState, Motion, State, StepReport, System};
 use serde::{Deserialize, Serialize};
-
-use crate::results::beams::SectionStresses;
 
 pub(crate) use seen::Seen;
 pub(crate) use still::{Largest, Still, slips};
@@ -33,9 +30,6 @@ const STEPS: [f64; 2] = [250.0, 2.5];
 /// Growth of the force from one copy to the next: the state of the largest force is that of one 2 % below it at the least.
 pub(crate) const GROWTH: f64 = 1.02;
 
-/// Equal parts of a run in each of which the stress of beams is looked at once: it costs about as much as their internal forces.
-const LOOKS: f64 = 2000.0;
-
 /// Releases that follow each other faster than this part of the run are one: the first.
 const RELEASES: f64 = 1.0 / 400.0;
 
@@ -49,8 +43,6 @@ pub(crate) struct Stills {
     end: f64,
     /// Time from one to the next of those at equal times, s.
     every: f64,
-    /// The same of those at which the stress of beams is looked at; infinite without beams.
-    looks: f64,
 }
 
 /// What was kept so far.
@@ -62,9 +54,6 @@ pub(crate) struct Kept {
     pub(crate) closing: Option<Still>,
     largest: Candidate,
     release: Candidate,
-    /// The state of the largest stress of beams, and the time of the last one that was looked at, s.
-    bent: Candidate,
-    looked: Option<f64>,
     /// Whether the last state had a contact force.
     closed: bool,
 }
@@ -111,10 +100,6 @@ impl Stills {
             begin,
             end,
             every: (end - begin) / (FILM * parts) as f64,
-            looks: match system.bodies.iter().any(has_sections) {
-                true => (end - begin) / LOOKS,
-                false => f64::INFINITY,
-            },
         }
     }
 
@@ -125,10 +110,8 @@ impl Stills {
 
     /// Whether this can be gone on with.
     pub(crate) fn takes(&self, system: &System, kept: &Kept) -> bool {
-        let candidates = [&kept.largest, &kept.release, &kept.bent];
-        let single = [&kept.closing].into_iter();
-        let single = single.chain(candidates.map(|candidate| &candidate.still));
-        let mut all = kept.equal.iter().chain(single.flatten());
+        let single = [&kept.closing, &kept.largest.still, &kept.release.still];
+        let mut all = kept.equal.iter().chain(single.into_iter().flatten());
         all.all(|still| still.is_of(system, &self.seen))
     }
 
@@ -139,7 +122,7 @@ impl Stills {
 
     /// Keeps the state if it is one of those to be kept.
     pub(crate) fn push(&mut self, system: &System, state: &State, report: &StepReport) {
-        let [equal, closing, largest, release, looks] = self.wants(state.time, report);
+        let [equal, closing, largest, release] = self.wants(state.time, report);
         if equal {
             self.keep(system, state);
         }
@@ -153,24 +136,16 @@ impl Stills {
         if release {
             kept.release.take(state.time, state);
         }
-        if looks {
-            kept.looked = Some(state.time);
-            let stress = largest_in_sections(system, &state.motion);
-            if stress > kept.bent.measure {
-                kept.bent.take(stress, state);
-            }
-        }
         kept.closed = force > 0.0;
     }
 
     /// Whether the state of this time (s) is one of those to be kept: at equal times, as the first with a contact force, that of the largest,
-    /// that of the last release, as that of the largest stress of beams, which is looked at.
-    pub(crate) fn wants(&self, time: f64, report: &StepReport) -> [bool; 5] {
+    /// that of the last release.
+    pub(crate) fn wants(&self, time: f64, report: &StepReport) -> [bool; 4] {
         // a step that ends there to within rounding is there
         // the time of a static stage before the dynamics is none: its start and its end are kept
-        let part = |time: f64, every: f64| ((time - self.begin) / every + 1e-6).floor().max(-1.0);
-        let number = |time: f64| part(time, self.every);
-        let look = |time: f64| part(time, self.looks);
+        let since = |time: f64| (time - self.begin) / self.every;
+        let number = |time: f64| (since(time) + 1e-6).floor().max(-1.0);
         let (force, kept) = (largest_force(report), &self.kept);
         let closed = force > 0.0;
         let pause = RELEASES * (self.end - self.begin);
@@ -181,7 +156,6 @@ impl Stills {
             closed && kept.closing.is_none(),
             closed && force > kept.largest.measure * GROWTH,
             kept.closed && !closed && again,
-            self.looks.is_finite() && kept.looked.is_none_or(|last| look(time) > look(last)),
         ]
     }
 
@@ -196,13 +170,7 @@ impl Stills {
 
     /// What was kept so far, all of it as pictures.
     pub(crate) fn settled(&mut self, system: &System) -> &Kept {
-        let Kept {
-            largest,
-            release,
-            bent,
-            ..
-        } = &mut self.kept;
-        for candidate in [largest, release, bent] {
+        for candidate in [&mut self.kept.largest, &mut self.kept.release] {
             candidate.settle(system, &self.seen);
         }
         &self.kept
@@ -220,33 +188,10 @@ fn largest_force(report: &StepReport) -> f64 {
     forces.fold(0.0, f64::max)
 }
 
-/// Whether a body is one of beams.
-fn has_sections(body: &Body) -> bool {
-    match body {
-        Body::Beam(_) | Body::LargeBeam(_) => true,
-        Body::Reduced(reduced) => reduced.has_sections(),
-        _ => false,
-    }
-}
-
-/// The largest equivalent stress in sections of beams, Pa.
-fn largest_in_sections(system: &System, motion: &Motion) -> f64 {
-    let sections = SectionStresses::new(system, motion);
-    let cells = sections.iter().flat_map(SectionStresses::of_cells);
-    let stresses = cells.flatten().map(|section| section.von_mises);
-    // what is not known is no number, which is not the larger
-    stresses.fold(0.0, f64::max)
-}
-
 impl Kept {
     /// The state nearest below the largest force, and that of the last release; once settled.
     pub(crate) fn extremes(&self) -> [Option<&Still>; 2] {
         [self.largest.still.as_ref(), self.release.still.as_ref()]
-    }
-
-    /// The state of the largest stress of beams; once settled.
-    pub(crate) fn bent(&self) -> Option<&Still> {
-        self.bent.still.as_ref()
     }
 }
 
