@@ -6,9 +6,12 @@
 //! body takes part, `m_i ← m_i (1 + p(x_i))`, p the polynomial of degree two that keeps the mass, the centre of mass and
 //! the moments of second order: the change that is least in `Σ (Δm_i)² / m_i` under these conditions. Where degree two
 //! would leave a mass that is not positive, or the nodes lie on too few planes, the moments of second order are not kept.
+//! A body of several pieces that share no node keeps all this in each of them.
 //!
 //! Source: Khenous, Laborde, Renard, European Journal of Mechanics A 27 (2008), mass redistribution under conservation of
 //! mass, centre of mass and inertia; the weights of the least change are derived here.
+
+use std::collections::BTreeMap;
 
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, MassKind};
@@ -75,10 +78,10 @@ pub(crate) fn redistribute(
                 "its mass is consistent: only a lumped one can be redistributed",
             ));
         }
-        let new = match dim {
-            1 => along(&bodies[k], masses, &bare, x),
-            _ => spread(masses, &bare, x, dim),
-        };
+        let new = by_pieces(&bodies[k], masses, &bare, &|own| match dim {
+            1 => along(&bodies[k], own, &bare, x),
+            _ => spread(own, &bare, x, dim),
+        });
         let new = new.ok_or_else(|| {
             refused("its other nodes are too few to take the mass of its contact nodes and keep the centre of mass")
         })?;
@@ -98,6 +101,51 @@ pub(crate) fn redistribute(
         mass.lumped[unknown as usize] = 0.0;
     }
     Ok(without)
+}
+
+/// New masses of a body: `one` gives those of a connected piece. Pieces without a bare node keep theirs.
+fn by_pieces(
+    body: &Body,
+    masses: &[(u32, f64)],
+    bare: &[bool],
+    one: &dyn Fn(&[(u32, f64)]) -> Option<Vec<f64>>,
+) -> Option<Vec<f64>> {
+    let mut new: Vec<f64> = masses.iter().map(|(_, m)| *m).collect();
+    for piece in pieces(body, masses, bare.len()) {
+        let own: Vec<(u32, f64)> = piece.iter().map(|&place| masses[place]).collect();
+        if !own.iter().any(|&(node, _)| bare[node as usize]) {
+            continue;
+        }
+        for (place, m) in piece.into_iter().zip(one(&own)?) {
+            new[place] = m;
+        }
+    }
+    Some(new)
+}
+
+/// Places among the masses of the nodes of each connected piece of a body, ascending, in the order of their first nodes. `nodes`: their number in
+/// the system.
+fn pieces(body: &Body, masses: &[(u32, f64)], nodes: usize) -> Vec<Vec<usize>> {
+    fn root(leader: &mut [u32], mut node: u32) -> u32 {
+        while leader[node as usize] != node {
+            leader[node as usize] = leader[leader[node as usize] as usize];
+            node = leader[node as usize];
+        }
+        node
+    }
+    let mut leader: Vec<u32> = (0..nodes as u32).collect();
+    body.each_element(&mut |own| {
+        for pair in own.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|node| root(&mut leader, node));
+            leader[a.max(b) as usize] = a.min(b);
+        }
+    });
+    let mut of_leader: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+    for (place, &(node, _)) in masses.iter().enumerate() {
+        let leader = root(&mut leader, node);
+        of_leader.entry(leader).or_default().push(place);
+    }
+    of_leader.into_values().collect()
 }
 
 /// Mesh nodes of both surfaces of a contact.

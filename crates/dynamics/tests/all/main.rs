@@ -28,6 +28,7 @@ mod momentum;
 mod mortar;
 mod newton;
 mod passage;
+mod pieces;
 mod quadrature;
 mod refusals;
 mod rolling;
