@@ -16,6 +16,7 @@ use std::sync::Arc;
 use carom_algebra::rotation::Rotation;
 use carom_contact::law::{Local, Status};
 use carom_contact::{Pairing, Search};
+use carom_nonsmooth::Compliance;
 use serde::{Deserialize, Serialize};
 
 use crate::ending::{GAIN, TOLERANCE, rounding, speed};
@@ -77,8 +78,8 @@ pub(crate) struct Between {
     pub(crate) sizes: Vec<f64>,
     pub(crate) version: u64,
     rates: Vec<f64>,
-    pub(crate) interface: Interface,
-    pub(crate) data: Vec<Candidate>,
+    interface: Interface,
+    data: Vec<Candidate>,
     /// Displacements and velocities of the whole at the start of the step, and at its end.
     start: [Vec<f64>; 2],
     end: [Vec<f64>; 2],
@@ -228,6 +229,7 @@ impl Between {
         let force = |&point: &u32| self.state.interface.force[point as usize];
         self.forces = self.candidates.iter().map(force).collect();
         self.lasting = self.forces.iter().map(|force| *force != 0.0).collect();
+        self.let_rigid_begin();
         self.change = f64::INFINITY;
         self.rows.iter_mut().for_each(Vec::clear);
         for (k, &point) in self.candidates.iter().enumerate() {
@@ -327,7 +329,13 @@ impl Between {
                 instant: [1.0; 2],
             });
         }
-        if let Err(failure) = self.solve_softened() {
+        let matrix = match self.softened.is_empty() {
+            true => &self.matrix,
+            false => &self.softened,
+        };
+        let problem = (Compliance::Dense(matrix), self.version);
+        let solved = self.interface.solve(&self.data, problem, [0.0, 1.0]);
+        if let Err(failure) = solved {
             let contact = system.point(self.candidates[0] as usize).0.name.clone();
             return Err(Error::Between {
                 step: step + 1,

@@ -1,15 +1,11 @@
 //! D of contacts between zones: rates that unit forces, constant over an outer step, leave at its end and over it.
 
+use carom_contact::Rows;
 use carom_dynamics::Driver;
 use carom_dynamics::linked::{Growth, Origin};
-use carom_nonsmooth::Compliance;
-use carom_nonsmooth::interface::Failure;
 
 use crate::between::Between;
 use crate::error::Error;
-
-/// Most that the own response of a point of a rigid body grows by.
-const MOST: f64 = 1e-3;
 
 impl Between {
     /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
@@ -74,61 +70,55 @@ impl Between {
                 });
             }
         }
-        self.soften(1.0);
+        self.soften();
         self.matrix_of.clone_from(&self.lasting);
         self.version += 1;
     }
 
-    /// Solves the contact problem with D softened. Where rows of rigid bodies depend on each other and D mixes means and ends it may not be
-    /// positive definite; then the means stand for all of it. The forces are those of D all the same: it is the rates found in the zones
-    /// that end the passes.
-    ///
-    /// # Errors
-    /// A contact problem without solution.
-    pub(crate) fn solve_softened(&mut self) -> Result<(), Failure> {
-        let mut times = 1.0;
-        loop {
-            let matrix = match self.softened.is_empty() {
-                true => &self.matrix,
-                false => &self.softened,
-            };
-            let problem = (Compliance::Dense(matrix), self.version);
-            match self.interface.solve(&self.data, problem, [0.0, 1.0]) {
-                Err(Failure::Singular { .. })
-                    if !self.softened.is_empty() && times * self.rigid.1 < MOST =>
-                {
-                    times *= 10.0;
-                    self.soften(times);
-                    self.version += 1;
-                }
-                solved => return solved.map(|_| ()),
+    /// Lets all points of rigid bodies begin anew where one does: their rows depend on each other, and D of some that last and some that
+    /// begin would contradict itself.
+    pub(crate) fn let_rigid_begin(&mut self) {
+        let rows = &self.pairing.rows;
+        let own = self
+            .candidates
+            .iter()
+            .map(|&point| self.is_rigid(rows, point));
+        let own: Vec<bool> = own.collect();
+        let begins = own
+            .iter()
+            .zip(&self.lasting)
+            .any(|(own, lasts)| *own && !lasts);
+        if begins {
+            for (lasts, own) in self.lasting.iter_mut().zip(own) {
+                *lasts &= !own;
             }
         }
     }
 
+    /// Whether a rigid body has part in a point.
+    fn is_rigid(&self, rows: &Rows, point: u32) -> bool {
+        let (unknowns, _) = rows.row(point as usize);
+        let mut unknowns = unknowns.iter();
+        unknowns.any(|unknown| self.rigid.0.get(*unknown as usize) == Some(&true))
+    }
+
     /// D with the own responses of points of rigid bodies a little larger: more than three such points on a plane have dependent rows, and
-    /// share their force ([`System::rigid_points`](carom_system::System::rigid_points)). `times`: how often that part.
-    fn soften(&mut self, times: f64) {
-        let (rigid, part) = (&self.rigid.0, times * self.rigid.1);
-        let rows = &self.pairing.rows;
-        let is_rigid = |point: &u32| {
-            let (unknowns, _) = rows.row(*point as usize);
-            let mut unknowns = unknowns.iter();
-            unknowns.any(|unknown| rigid.get(*unknown as usize) == Some(&true))
-        };
+    /// share their force ([`System::rigid_points`](carom_system::System::rigid_points)).
+    fn soften(&mut self) {
         self.softened.clear();
-        if !self.candidates.iter().any(is_rigid) {
+        let rows = &self.pairing.rows;
+        let own = |point: &u32| self.is_rigid(rows, *point);
+        if !self.candidates.iter().any(own) {
             return;
         }
-        self.softened.extend_from_slice(match times > 1.0 {
-            true => &self.responses[1],
-            false => &self.matrix,
-        });
+        let mut softened = std::mem::take(&mut self.softened);
+        softened.extend_from_slice(&self.matrix);
         let n = self.candidates.len();
         for (i, point) in self.candidates.iter().enumerate() {
-            if is_rigid(point) {
-                self.softened[i * n + i] *= 1.0 + part;
+            if self.is_rigid(rows, *point) {
+                softened[i * n + i] *= 1.0 + self.rigid.1;
             }
         }
+        self.softened = softened;
     }
 }
