@@ -69,7 +69,9 @@ mod tests {
         let fluid = 1000.0 * std::f64::consts::PI * 0.03 * 2.0;
         assert!((a + 2.0 * b + c - fluid).abs() < 1e-12 * fluid);
         assert!(a * c - b * b > 0.0);
-        let free = FluidGap::around(1000.0, [0.1, 1e4]);
-        assert!((free / (1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-9);
+        let [free, displaced] = FluidGap::around(1000.0, [0.1, 1e4]);
+        let cylinder = 1000.0 * std::f64::consts::PI * 0.01;
+        assert!((free / cylinder - 1.0).abs() < 1e-9);
+        assert!((displaced / cylinder - 1.0).abs() < 1e-9);
     }
 }

@@ -116,7 +116,7 @@ fn on_cube(shell: bool, lies: bool, more: &str) -> Vec<String> {
         true => {
             cells.push((3, 1, &[6, 7, 10, 9]));
             if lies {
-                cells.push((3, 1, &[6, 7, 8, 5]));
+                cells.push((3, 1, &[5, 8, 7, 6]));
             }
             "body.s = { region = \"s\", material = \"m\", section.shell.thickness = 0.01"
         }

@@ -139,9 +139,22 @@ fn stopped_and_gone_on_with(list: &[Small]) {
         let names = [&whole, &cut].map(|files| files.keys().cloned().collect::<Vec<_>>());
         assert_eq!(names[0], names[1], "{name}");
         for (file, bytes) in &whole {
-            assert!(cut[file] == *bytes, "{name}: {file} differs");
+            // a run that goes on begins a new part of what is compressed
+            let same = match file.ends_with(".gz") {
+                true => unpacked(&cut[file]) == unpacked(bytes),
+                false => cut[file] == *bytes,
+            };
+            assert!(same, "{name}: {file} differs");
         }
     }
+}
+
+/// What is in a compressed table.
+fn unpacked(bytes: &[u8]) -> Vec<u8> {
+    let mut text = Vec::new();
+    let mut decoder = flate2::read::MultiGzDecoder::new(bytes);
+    std::io::Read::read_to_end(&mut decoder, &mut text).unwrap();
+    text
 }
 
 #[test]

@@ -315,56 +315,6 @@ fn node_at(model: &Model, place: [f64; 2], first: u32) -> u32 {
 }
 
 /// Two plates and a bolt: the spring holds its direction, and the turn about its end is for the contact alone to hold.
-#[test]
-fn plates_that_a_preloaded_spring_presses_together_find_their_equilibrium() {
-    let up = [0.0, 1.0, 0.0];
-    // 0.01 N at no elongation, on squares of E A = 4 N
-    let bent = Curve::new(vec![[-0.02, 0.0], [0.0, 0.01], [0.02, 0.03]]).unwrap();
-    for material in [COLUMN.into(), neo_hooke()] {
-        for (sliding, curve, pushed) in [
-            (Sliding::Small, bent.clone(), false),
-            (Sliding::Finite, bent.clone(), false),
-            (Sliding::Finite, Curve::line(0.5), true),
-        ] {
-            let mut model = stacked(material, sliding, false);
-            let ends = [([0.5, 0.0], 0), ([0.5, 2.0], 9)];
-            let ends = ends.map(|(place, first)| node_at(&model, place, first));
-            let spring = (curve.clone(), Some(up));
-            link(&mut model, &ends, DiscreteKind::Spring, spring);
-            let load = if pushed { 0.01 } else { 0.0 };
-            if pushed {
-                let cells = &model.bodies[1].spec.cells;
-                let top = &model.mesh.groups["b.top"];
-                // on a thickness of 0.5
-                let push = Load {
-                    name: "push".into(),
-                    surface: Surface::new(&model.mesh, top, cells).unwrap(),
-                    kind: LoadKind::Traction([0.0, -load / 0.5, 0.0]),
-                    amplitude: Amplitude::constant(1.0),
-                };
-                model.nonlinear.loads = vec![push];
-            }
-            let newton = pressed(model).unwrap();
-            assert!(newton.residuals().len() <= 20, "{:?}", newton.residuals());
-            let (system, u) = (newton.system(), &newton.state().motion.u);
-            let [nut, head] =
-                ends.map(|node| system.unknowns.vector(system.number[node as usize], u)[1]);
-            let pull = match pushed {
-                true => 0.5 * (head - nut),
-                // slope of 0.5 below no elongation: the plates are shorter than without the bolt
-                false => 0.01 + 0.5 * (head - nut),
-            };
-            assert!(head < nut);
-            let force = newton.report().contacts[0].force;
-            // iterations end at 1e-10 of the forces, the largest of which are those inside
-            assert!(
-                (force - pull - load).abs() < 1e-9 * (pull.abs() + load),
-                "{force} {pull}"
-            );
-        }
-    }
-}
-
 /// A body of two pieces is in one part of the model, and its pieces move apart all the same.
 #[test]
 fn a_piece_of_a_body_rests_on_another_piece_of_it() {

@@ -7,9 +7,9 @@ use carom_testing::Random;
 /// What is beside a model, far away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bystander {
-    /// A heavy block that falls on a plane of its own.
+    /// A heavy block that falls above a plane of its own.
     Block,
-    /// A rigid block that falls on a plane of its own.
+    /// A rigid block that falls above a plane of its own.
     Rigid,
     /// A heavy block that flies fast, and touches nothing.
     Flier,
@@ -23,16 +23,12 @@ pub const BYSTANDERS: [Bystander; 3] = [Bystander::Block, Bystander::Rigid, Byst
 pub struct Change {
     /// Velocity added along the plane, m/s.
     pub velocity: f64,
-    /// Way of the origin, m.
-    pub shift: [f64; 2],
     /// Turned by a quarter.
     pub turned: bool,
     /// x reversed, before the turn.
     pub mirrored: bool,
     /// Bodies, meshes and contacts in reversed order.
     pub reversed: bool,
-    /// All lengths times this, with densities and moduli such that times and strains stay.
-    pub length: f64,
     pub bystander: Option<Bystander>,
 }
 
@@ -40,22 +36,15 @@ impl Default for Change {
     fn default() -> Change {
         Change {
             velocity: 0.0,
-            shift: [0.0; 2],
             turned: false,
             mirrored: false,
             reversed: false,
-            length: 1.0,
             bystander: None,
         }
     }
 }
 
 impl Change {
-    /// A force of the model as it is over that of the changed one: stresses stay, and so does the thickness.
-    pub fn force_unit(&self) -> f64 {
-        1.0 / self.length
-    }
-
     /// A direction after mirror and turn.
     fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let x = if self.mirrored { -x } else { x };
@@ -67,10 +56,7 @@ impl Change {
         let ends = [origin, [origin[0] + size[0], origin[1] + size[1]]].map(|x| self.direction(x));
         let low = [0, 1].map(|i| ends[0][i].min(ends[1][i]));
         let high = [0, 1].map(|i| ends[0][i].max(ends[1][i]));
-        [
-            [0, 1].map(|i| self.length * low[i] + self.shift[i]),
-            [0, 1].map(|i| self.length * (high[i] - low[i])),
-        ]
+        [low, [0, 1].map(|i| high[i] - low[i])]
     }
 
     /// The name of a side after mirror and turn, of one along this outward direction.
@@ -143,10 +129,11 @@ impl Model {
         let mut y = 0.0;
         for k in 0..count {
             y += 2e-4 + 1e-4 * of(5) as f64;
-            let size = [0.1 + 0.01 * of(10) as f64, 0.05 + 0.01 * of(5) as f64];
+            // each lies on the one below, so that its points have faces opposite them
+            let size = [0.2 - 0.05 * k as f64, 0.05 + 0.01 * of(5) as f64];
             let fall = 1.0 + of(4) as f64;
             blocks.push(Block {
-                origin: [0.013 * of(5) as f64, y],
+                origin: [0.01 * k as f64 + 0.003 * of(5) as f64, y],
                 size,
                 elements: [1 + of(3), 1 + of(2)],
                 velocity: [0.0, if k == 0 && !on_plane { 0.0 } else { -fall }],
@@ -168,6 +155,11 @@ impl Model {
     /// Least speed of a block that falls, m/s.
     pub fn speed(&self) -> f64 {
         1.0
+    }
+
+    /// What its solves leave, relative.
+    pub fn tolerance(&self) -> f64 {
+        if self.finite { 1e-6 } else { 1e-9 }
     }
 
     /// Step, s.
@@ -213,11 +205,9 @@ impl Model {
             change.velocity
         };
         let velocity = change.direction([block.velocity[0] + along, block.velocity[1]]);
-        let velocity = velocity.map(|v| change.length * v);
         let kind = if self.finite { "neo-hooke" } else { "elastic" };
-        let density = 1000.0 / (change.length * change.length);
         format!(
-            "[material.m{name}]\ndensity = {density:?}\n{kind} = {{ young = {:?}, poisson = 0.3 }}\n\
+            "[material.m{name}]\ndensity = 1000.0\n{kind} = {{ young = {:?}, poisson = 0.3 }}\n\
              [body.{name}]\nregion = \"{name}\"\nmaterial = \"m{name}\"\nsection.plane-strain.thickness = 1.0\n\
              initial.velocity = {velocity:?}",
             block.young
@@ -225,18 +215,16 @@ impl Model {
     }
 
     fn contacts(&self, change: &Change, tables: &mut Vec<String>) {
-        let law = self
-            .law
-            .replace("STIFFNESS", &format!("{:?}", 1e10 / change.length));
+        let law = self.law.replace("STIFFNESS", "1e10");
         let (top, bottom) = (change.side([0.0, 1.0]), change.side([0.0, -1.0]));
         let mut rest = law;
         if self.friction > 0.0 && !self.on_plane {
             let _ = write!(rest, "\nfriction.coulomb = {:?}", self.friction);
         }
         if self.on_plane {
-            let (point, normal) = (change.shift, change.direction([0.0, 1.0]));
+            let normal = change.direction([0.0, 1.0]);
             tables.push(format!(
-                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = {point:?}, normal = {normal:?} }}\n{rest}"
+                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = [0.0, 0.0], normal = {normal:?} }}\n{rest}"
             ));
         }
         for k in 1..self.blocks.len() {
@@ -254,7 +242,7 @@ impl Model {
         (meshes, tables): (&mut Vec<String>, &mut Vec<String>),
     ) {
         let block = Block {
-            origin: [40.0, 0.001],
+            origin: [40.0, 1.0],
             size: [2.0, 1.0],
             elements: [2, 1],
             velocity: match bystander {
