@@ -7,6 +7,10 @@ use crate::shell::ShellSection;
 
 /// How the displacement of an element is restricted, and what its missing dimensions are.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one of a body, which has thousands of elements"
+)]
 pub enum Kinematics {
     /// Axial strain only.
     Bar {

@@ -11,7 +11,6 @@ use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::accelerations::accelerations;
 use crate::build::Built;
-use crate::words::words;
 
 /// A line of `carom check`: what, and how much.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,8 +28,8 @@ pub(crate) fn fact(name: impl Into<String>, value: impl Into<String>) -> Fact {
     }
 }
 
-/// Sizes, speeds and times of a case.
-pub fn facts(built: &Built) -> Vec<Fact> {
+/// Sizes, speeds and times of a case; `words`: what is said of it in words, of the approaches of its contacts.
+pub(crate) fn facts_with(built: &Built, words: impl FnOnce(&[Approach]) -> Vec<Fact>) -> Vec<Fact> {
     let system = &built.system;
     let elements: usize = system.bodies.iter().map(|body| body.cells().len()).sum();
     let held = system.fixed.iter().filter(|fixed| **fixed).count();
@@ -49,7 +48,7 @@ pub fn facts(built: &Built) -> Vec<Fact> {
     let contacts = 0..system.contacts.len();
     let approaches = contacts.map(|k| approach(system, &accelerations, (k, start)));
     let approaches: Vec<Approach> = approaches.collect();
-    facts.extend(words(built, &approaches));
+    facts.extend(words(&approaches));
     for (k, body) in system.bodies.iter().enumerate() {
         let Some(body) = body.as_solid() else {
             facts.extend(body.as_discrete().map(discrete_fact));

@@ -5,7 +5,12 @@ use carom_dynamics::System;
 use carom_output::plot::{digits, quantity};
 
 use crate::build::Built;
-use crate::facts::{Approach, Fact, courant_number, fact};
+use crate::facts::{Approach, Fact, courant_number, fact, facts_with};
+
+/// Sizes, speeds and times of a case.
+pub fn facts(built: &Built) -> Vec<Fact> {
+    facts_with(built, |approaches| words(built, approaches))
+}
 
 /// Speed of waves, m/s, above that of any solid: beryllium has 13 km/s, diamond 18 km/s.
 const FAST: f64 = 2e4;

@@ -13,6 +13,7 @@ mod mortar;
 mod obstacle;
 mod pairing;
 mod passage;
+mod passed;
 mod places;
 mod point;
 mod rest;

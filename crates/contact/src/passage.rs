@@ -5,8 +5,9 @@
 //! step, against that of each face, taken as straight.
 
 use carom_elements::Kind;
-use carom_mesh::{Bounds, Face, Projection, project};
+use carom_mesh::{Bounds, Face};
 
+use crate::passed::passed_face;
 use crate::search::faces::FaceTree;
 use crate::{Contact, Obstacle, Places, Point, Search, Shape, Side, Sliding, Target};
 
@@ -140,28 +141,6 @@ fn entered(
         let from = [0, 1, 2].map(|i| from[i] + way(i));
         passed_face((face, &now[..n]), [&from, &to])
     })
-}
-
-/// The normal of a face that stands where the straight way between two places passes it from before it to behind it, if it does.
-pub(crate) fn passed_face(
-    (face, x): (&Face, &[[f64; 3]]),
-    [from, to]: [&[f64; 3]; 2],
-) -> Option<[f64; 3]> {
-    let [before, behind] = [from, to].map(|place| over(&project(face, x, place), place));
-    if before < 0.0 || behind >= 0.0 {
-        return None;
-    }
-    let part = before / (before - behind);
-    let through = [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]));
-    let foot = project(face, x, &through);
-    foot.inside.then_some(foot.normal)
-}
-
-/// Height of a place over the plane that touches a face in its foot, m.
-fn over(foot: &Projection, place: &[f64; 3]) -> f64 {
-    (0..3)
-        .map(|i| foot.normal[i] * (place[i] - foot.point[i]))
-        .sum()
 }
 
 /// Whether a point has passed an obstacle and is not behind the side on which it came.

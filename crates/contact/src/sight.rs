@@ -29,6 +29,7 @@ use crate::{Frames, Places, Point};
 mod across;
 mod along;
 mod lists;
+mod over;
 mod parts;
 mod sides;
 mod turned;

@@ -5,7 +5,6 @@ use std::fmt;
 use carom_ranks::memory::Short;
 use thiserror::Error as ThisError;
 
-use crate::state::State;
 use crate::system::System;
 
 /// A node of the mesh that a message names.
@@ -288,9 +287,9 @@ pub enum Error {
 
 impl Error {
     /// The step from a state has no room.
-    pub(crate) fn no_room(state: &State, cause: Short) -> Error {
+    pub(crate) fn no_room(step: u64, cause: Short) -> Error {
         Error::Memory {
-            step: state.step + 1,
+            step: step + 1,
             cause,
         }
     }

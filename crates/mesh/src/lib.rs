@@ -23,11 +23,13 @@ pub mod raise;
 pub mod read;
 pub mod refine;
 mod rim;
+mod rims;
 pub mod search;
 pub mod surface;
 mod vector;
 
 mod error;
+mod face;
 #[cfg(test)]
 mod random;
 
@@ -35,6 +37,7 @@ pub use beside::CellsByNode;
 pub use bounds::Bounds;
 pub use element_id::ElementId;
 pub use error::Error;
+pub use face::{Face, face_nodes};
 pub use halve::halve_bars;
 pub use mesh::{Block, Defect, Group, Mesh, gather};
 pub use parts::Parts;
@@ -42,6 +45,7 @@ pub use place::Placement;
 pub use project::{Projection, QUADS, project, project_quads};
 pub use raise::raise;
 pub use refine::{is_refinable, refine};
-pub use rim::{Rim, across, is_on};
+pub use rim::{Rim, is_on};
+pub use rims::across;
 pub use search::BoxTree;
-pub use surface::{Face, Surface, face_nodes};
+pub use surface::Surface;

@@ -1,5 +1,8 @@
 //! Modes of solids, beams and shells.
 
+// Helpers of tests panic as the tests themselves do.
+#![allow(clippy::unwrap_used)]
+
 use carom_bodies::{
     BeamSection, BeamTheory, BodySpec, Kinematics, MassKind, Rotations, SectionShape, ShellSection,
 };

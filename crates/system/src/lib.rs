@@ -5,6 +5,7 @@
 
 mod adaptive;
 mod assemblies;
+mod assembling;
 mod bare;
 mod between;
 mod build;

@@ -103,13 +103,11 @@ pub(crate) fn redistribute(
     Ok(without)
 }
 
+/// New masses of nodes with these masses, if there are any.
+type Spread<'a> = dyn Fn(&[(u32, f64)]) -> Option<Vec<f64>> + 'a;
+
 /// New masses of a body: `one` gives those of a connected piece. Pieces without a bare node keep theirs.
-fn by_pieces(
-    body: &Body,
-    masses: &[(u32, f64)],
-    bare: &[bool],
-    one: &dyn Fn(&[(u32, f64)]) -> Option<Vec<f64>>,
-) -> Option<Vec<f64>> {
+fn by_pieces(body: &Body, masses: &[(u32, f64)], bare: &[bool], one: &Spread) -> Option<Vec<f64>> {
     let mut new: Vec<f64> = masses.iter().map(|(_, m)| *m).collect();
     for piece in pieces(body, masses, bare.len()) {
         let own: Vec<(u32, f64)> = piece.iter().map(|&place| masses[place]).collect();

@@ -10,21 +10,12 @@
 
 use std::f64::consts::PI;
 
-use super::SectionForces;
-use super::section::{BeamSection, SectionProperties, SectionShape};
+use super::forces::SectionForces;
+use super::section::{BeamSection, Extremes, SectionProperties, SectionShape};
 
 /// Places along each side of a rectangle, and around a round section: between them the largest equivalent stress is missed by less than
 /// 1 %, and not at all under bending in one plane.
 const PLACES: u32 = 24;
-
-/// Where a section with given properties has its largest stresses.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Extremes {
-    /// Largest distances of its fibres from the centroid along y and z, m.
-    pub fibres: [f64; 2],
-    /// The largest shear stress of a torque T is `T r/J` with this r, m.
-    pub torsion: f64,
-}
 
 /// The largest stresses in the sections of an element, at its ends.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -11,6 +11,7 @@ mod element;
 mod extremes;
 mod fibres;
 mod flow;
+mod forces;
 mod large;
 mod results;
 mod section;
@@ -25,10 +26,11 @@ use carom_materials::{Elastic, Plane};
 use carom_mesh::{ElementId, Mesh};
 
 pub use self::axis::BeamAxis;
-pub use self::extremes::{Extremes, SectionStress};
+pub use self::extremes::SectionStress;
+pub use self::forces::SectionForces;
 pub use self::large::LargeBeam;
 pub use self::section::{
-    BeamSection, BeamTheory, LAYERS, Rotations, SectionProperties, SectionShape,
+    BeamSection, BeamTheory, Extremes, LAYERS, Rotations, SectionProperties, SectionShape,
 };
 
 use self::checks::{check, end_weights};
@@ -46,17 +48,6 @@ const PARALLEL: f64 = 1e-6;
 
 /// Entries of the lumped mass off the diagonal, over those on it, that are rounding.
 const ROUNDING: f64 = 1e-12;
-
-/// Forces and moments in the sections of an element, on the side from which its axis points outward, in the axes of the section.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SectionForces {
-    /// Normal force, positive in tension, and shear forces along y and z, N.
-    pub force: [f64; 3],
-    /// Torque and bending moments about y and z at the first node, N m.
-    pub moment_first: [f64; 3],
-    /// The same at the second node.
-    pub moment_second: [f64; 3],
-}
 
 /// A body of beam elements on a system.
 #[derive(Debug)]

@@ -2,7 +2,14 @@
 
 use std::f64::consts::PI;
 
-use super::extremes::Extremes;
+/// Where a section with given properties has its largest stresses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremes {
+    /// Largest distances of its fibres from the centroid along y and z, m.
+    pub fibres: [f64; 2],
+    /// The largest shear stress of a torque T is `T r/J` with this r, m.
+    pub torsion: f64,
+}
 
 /// Layers of fibres where nothing else is said.
 pub const LAYERS: u32 = 8;

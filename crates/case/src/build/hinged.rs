@@ -19,6 +19,9 @@ use super::Builder;
 use super::arlequin::is_thin;
 use crate::error::Problem;
 
+/// A node of a solid, and the axes about which a body may turn there.
+type FreeNode = (u32, Vec<[f64; 3]>);
+
 /// Sine of an angle below which places are on one line.
 const STRAIGHT: f64 = 1e-6;
 
@@ -42,7 +45,7 @@ impl Builder<'_> {
                 continue;
             };
             let path = format!("body.{}", body.spec.name);
-            let mut found: BTreeMap<usize, Vec<(u32, Vec<[f64; 3]>)>> = BTreeMap::new();
+            let mut found: BTreeMap<usize, Vec<FreeNode>> = BTreeMap::new();
             if is_thin(body) && body.rigid.is_none() {
                 for (node, axes) in hinges((mesh, body), &shared, &held) {
                     if is_joined(mesh, node, &axes, joined) {

@@ -6,7 +6,7 @@ use carom_elements::{MAX_FACE_NODES, map};
 use carom_mesh::{Bounds, BoxTree, Face, Mesh, Projection, Rim, Surface, project};
 
 use super::distance::Distance;
-use crate::passage::passed_face;
+use crate::passed::passed_face;
 use crate::search::faces_point;
 
 /// Rigid surface of faces: the material must stay on the side to which their normals point.

@@ -196,7 +196,7 @@ impl Driver {
         let points = (&self.candidates[..], 1, together);
         if !self.refined.holds_columns {
             let room = compliance.has_room(points, rows, &system.fixed, operators);
-            room.map_err(|cause| Error::no_room(&self.state, cause))?;
+            room.map_err(|cause| Error::no_room(self.state.step, cause))?;
             compliance.update(points, rows, &system.fixed, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());

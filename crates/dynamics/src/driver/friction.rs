@@ -60,7 +60,7 @@ impl Driver {
         if !self.refined.holds_columns {
             let of = (&self.stacked, &system.fixed[..]);
             let room = compliance.has_room(points, of.0, of.1, operators);
-            room.map_err(|cause| Error::no_room(&self.state, cause))?;
+            room.map_err(|cause| Error::no_room(self.state.step, cause))?;
             compliance.update(points, of.0, of.1, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());

@@ -54,6 +54,7 @@ mod obstacles;
 pub mod paired;
 mod part_matrix;
 mod passage;
+mod passed;
 mod pieces;
 mod predictor;
 mod projection;

@@ -1,17 +1,14 @@
 //! Points that have passed what they face in a step, without a force that tells of it.
 
-use super::Driver;
-use super::deletion::as_narrowed;
-use crate::shared::Own;
 use crate::system::System;
 
 /// Whether a step was so long that a point may pass what it faces.
 #[derive(Default)]
 pub(super) struct Passage {
     /// Of each contact the depth up to which a point is seen behind what it faces, m.
-    depths: Vec<f64>,
+    pub(super) depths: Vec<f64>,
     /// The most that a node of each has moved in the step, m; infinite where pairing has not told.
-    ways: Vec<f64>,
+    pub(super) ways: Vec<f64>,
 }
 
 impl Passage {
@@ -33,37 +30,5 @@ impl Passage {
     /// Forgets what nodes have moved.
     pub(super) fn forget(&mut self) {
         self.ways.fill(f64::INFINITY);
-    }
-}
-
-impl Driver {
-    /// How many points of a contact have passed what they face in the step, are not seen behind it and have no force.
-    pub(super) fn passed(&self, number: usize) -> u64 {
-        let (system, depth) = (&*self.system, self.passage.depths[number]);
-        // both sides move
-        if depth == f64::INFINITY || 2.0 * self.passage.ways[number] <= depth {
-            return 0;
-        }
-        let contact = as_narrowed(&self.narrowed, system, number);
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let ways = [
-            system.places(self.state.time, &old.u, &old.frames),
-            system.places(self.state.time + self.dt, &new.u, &new.frames),
-        ];
-        let ways = [&ways[0], &ways[1]];
-        let first = system.first_point[number];
-        let forces = [&self.state.interface.force, &self.next.interface.force];
-        let closed = |k: usize| forces.iter().any(|force| force[first + k] != 0.0);
-        let passed = match self.active.own_of(number) {
-            Own::All if 2.0 * contact.way(ways) <= depth => 0,
-            Own::All => contact.passed(ways, 0..contact.points.len(), closed),
-            // those that others share are paired with the ends of steps, which tells the way
-            Own::Some(_) if self.passage.ways[number] == f64::INFINITY => 0,
-            Own::Some(part) => {
-                let points = part.points.iter().map(|&point| point as usize);
-                contact.passed(ways, points, closed)
-            }
-        };
-        passed as u64
     }
 }

@@ -6,7 +6,7 @@ use carom_dynamics::{Motion, System};
 
 use crate::results::Fields;
 use crate::results::beams::SectionStresses;
-use crate::results::derived::principal;
+use crate::results::principal::principal;
 use crate::vtu::{Field, Values};
 
 /// Bodies of whose cells there are fields, each with the history of its materials.

@@ -14,6 +14,7 @@ use carom_elements::{Element, MAX_NODES, map};
 
 use crate::results::Fields;
 use crate::results::cells::{Bent, Bodies, in_order, von_mises};
+use crate::results::principal::principal;
 use crate::vtu::{Field, Values};
 
 /// Those that are asked for; empty otherwise.
@@ -128,17 +129,6 @@ fn at_nodes<const N: usize>(
         false => [0.0; N],
     };
     sums.into_iter().map(mean).collect()
-}
-
-/// The principal values of a symmetric tensor, the largest first.
-pub(crate) fn principal(tensor: &Mat3) -> [f64; 3] {
-    // iterations on what is no number have no end
-    if !tensor.iter().all(|component| component.is_finite()) {
-        return [f64::NAN; 3];
-    }
-    let mut values: [f64; 3] = tensor.symmetric_eigenvalues().into();
-    values.sort_by(|a, b| b.total_cmp(a));
-    values
 }
 
 /// The largest magnitude of a principal strain at the middle of the cells of bodies that are there, and its cell; the first of equals.

@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Pieces, Results, allowables, columns, discrete, exact, fields, figures, histories, impacts,
-    instants, loads, page, stills, totals,
+    Pieces, Results, columns, discrete, exact, fields, figures, histories, impacts, instants,
+    loads, page, stills, support_peaks, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::{Settings, Tables};
@@ -29,7 +29,7 @@ struct Beside(
     figures::Traces,
     stills::Kept,
     Vec<instants::Instant>,
-    (discrete::DiscretePeaks, allowables::SupportPeaks),
+    (discrete::DiscretePeaks, support_peaks::SupportPeaks),
     Vec<loads::LoadTotals>,
     Vec<Vec<Vec<[f64; 2]>>>,
     (Vec<f64>, Vec<Vec<f64>>),

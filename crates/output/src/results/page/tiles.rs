@@ -113,7 +113,7 @@ fn margin(summary: &Summary) -> Option<Tile> {
             "Margin",
             percent(left),
             format!("{of}: {found} of {allowable}{others}"),
-            *section,
+            section,
         )
     })
 }

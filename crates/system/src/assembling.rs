@@ -1,0 +1,214 @@
+//! Finds the assemblies of a system, and what holds them.
+
+use carom_algebra::unknowns::Kind;
+use carom_contact::{Obstacle, Shape, Target};
+
+use crate::assemblies::{Assemblies, Assembly};
+use crate::system::System;
+
+impl Assemblies {
+    /// Those of a system.
+    pub(crate) fn of(system: &System) -> Assemblies {
+        let mut assemblies = joined(system);
+        for (number, bodies) in system.touching.iter().enumerate() {
+            if let Some(&body) = bodies.first() {
+                let assembly = assemblies.of_part[system.part_of_body[body]];
+                assemblies.all[assembly].contacts.push(number);
+            }
+        }
+        let mut by_axis = [0, 1, 2].map(|_| vec![0.0; system.unknowns()]);
+        let mut momentum = vec![0.0; system.unknowns()];
+        for (axis, mass) in by_axis.iter_mut().enumerate() {
+            let unit: Vec<f64> = (0..system.unknowns())
+                .map(|i| f64::from(system.unknowns.kind(i) == Kind::Translation(axis)))
+                .collect();
+            system.mass.multiply(&unit, mass);
+        }
+        system
+            .mass
+            .multiply(&system.initial_velocity, &mut momentum);
+        for assembly in &mut assemblies.all {
+            let mut sum = [0.0; 3];
+            for unknown in assembly
+                .parts
+                .iter()
+                .flat_map(|&part| system.parts[part].clone())
+            {
+                if let Kind::Translation(axis) = system.unknowns.kind(unknown) {
+                    sum[axis] += momentum[unknown];
+                    assembly.mass[axis] += by_axis[axis][unknown];
+                }
+            }
+            let mass = assembly.mass;
+            let mean = [0, 1, 2].map(|i| if mass[i] > 0.0 { sum[i] / mass[i] } else { 0.0 });
+            assembly.velocity = Frame::new(mean).held(&holds(system, assembly));
+        }
+        assemblies
+    }
+
+    /// The assembly of a contact.
+    pub fn of_contact(&self, system: &System, contact: usize) -> usize {
+        self.of_part[system.part_of_body[system.sides[contact].0]]
+    }
+}
+
+/// The parts that contacts and links join, without masses and frames.
+fn joined(system: &System) -> Assemblies {
+    let mut first: Vec<usize> = (0..system.parts.len()).collect();
+    let mut join = |parts: &mut dyn Iterator<Item = usize>| {
+        let Some(one) = parts.next() else { return };
+        for other in parts {
+            let [one, other] = [first[one], first[other]];
+            let (low, high) = (one.min(other), one.max(other));
+            if low == high {
+                continue;
+            }
+            for first in &mut first {
+                if *first == high {
+                    *first = low;
+                }
+            }
+        }
+    };
+    for bodies in &system.touching {
+        join(&mut bodies.iter().map(|&body| system.part_of_body[body]));
+    }
+    for row in system.link_rows.iter() {
+        join(
+            &mut row
+                .iter()
+                .map(|&(unknown, _)| system.part_of(unknown as usize)),
+        );
+    }
+    let mut assemblies = Assemblies {
+        all: Vec::new(),
+        of_part: vec![0; first.len()],
+    };
+    let mut number = vec![0; first.len()];
+    for (part, &first) in first.iter().enumerate() {
+        if first == part {
+            number[part] = assemblies.all.len();
+            assemblies.all.push(Assembly::default());
+        }
+        assemblies.of_part[part] = number[first];
+        assemblies.all[number[first]].parts.push(part);
+    }
+    assemblies
+}
+
+/// A direction in which something outside holds an assembly, and the velocity along it of what does, m/s.
+struct Hold {
+    direction: [f64; 3],
+    velocity: f64,
+}
+
+/// What holds an assembly at the start.
+fn holds(system: &System, assembly: &Assembly) -> Vec<Hold> {
+    let mut holds = Vec::new();
+    let mut along = |axis: usize, velocity: f64| {
+        let mut direction = [0.0; 3];
+        direction[axis] = 1.0;
+        holds.push(Hold {
+            direction,
+            velocity,
+        });
+    };
+    let has = |body: &usize| assembly.parts.contains(&system.part_of_body[*body]);
+    let bodies = (0..system.bodies.len()).filter(has);
+    let grounded = bodies.map(|body| &system.bodies[body]).any(|body| {
+        // the momentum of a reduced body is in its amplitudes
+        !body.balances_itself() || body.as_reduced().is_some()
+    });
+    if grounded {
+        (0..3).for_each(|axis| along(axis, 0.0));
+    }
+    if system.axisymmetric {
+        along(0, 0.0);
+    }
+    for part in &assembly.parts {
+        let mut known = [false; 3];
+        for unknown in system.parts[*part].clone().filter(|&i| system.fixed[i]) {
+            if let Kind::Translation(axis) = system.unknowns.kind(unknown)
+                && !std::mem::replace(&mut known[axis], true)
+            {
+                along(axis, velocity_of(system, unknown));
+            }
+        }
+    }
+    for (number, contact) in system.contacts.iter().enumerate() {
+        if let Target::Rigid(obstacle) = &contact.target
+            && system.touching[number].iter().any(&has)
+        {
+            of_obstacle(obstacle, system.friction[number] > 0.0, &mut holds);
+        }
+    }
+    holds
+}
+
+/// Velocity at the start of an unknown that is held, m/s.
+fn velocity_of(system: &System, unknown: usize) -> f64 {
+    let follows = system.nonlinear.follows.iter();
+    let mut follows = follows.filter(|follows| follows.unknown as usize == unknown);
+    follows.next().map_or(0.0, |follows| {
+        system.nonlinear.amplitudes[follows.amplitude].rate(0.0)
+    })
+}
+
+/// The directions that an obstacle holds: a plane without friction its normal, any other all.
+fn of_obstacle(obstacle: &Obstacle, rubs: bool, holds: &mut Vec<Hold>) {
+    let at = match &obstacle.shape {
+        Shape::Plane(plane) => plane.point,
+        Shape::Sphere(_) | Shape::Cylinder(_) | Shape::Profile(_) | Shape::Surface(_) => [0.0; 3],
+    };
+    let velocity = obstacle.mean_velocity(&at, 0.0, [0.0, 0.0]);
+    let mut along = |direction: [f64; 3]| {
+        let velocity = (0..3).map(|i| direction[i] * velocity[i]).sum();
+        holds.push(Hold {
+            direction,
+            velocity,
+        });
+    };
+    match &obstacle.shape {
+        Shape::Plane(plane) if !rubs => along(plane.normal),
+        _ => (0..3).for_each(|axis| along([0, 1, 2].map(|i| f64::from(i == axis)))),
+    }
+}
+
+/// A velocity, and the directions along which it is settled.
+struct Frame {
+    velocity: [f64; 3],
+    settled: Vec<[f64; 3]>,
+}
+
+/// Part of a direction across the settled ones below which it is one of them.
+const PARALLEL: f64 = 1e-6;
+
+impl Frame {
+    fn new(velocity: [f64; 3]) -> Frame {
+        Frame {
+            velocity,
+            settled: Vec::new(),
+        }
+    }
+
+    /// The velocity nearest to this one that is that of each hold along its direction; where two holds differ, the first counts.
+    fn held(mut self, holds: &[Hold]) -> [f64; 3] {
+        let dot = |a: &[f64; 3], b: &[f64; 3]| -> f64 { (0..3).map(|i| a[i] * b[i]).sum() };
+        for hold in holds {
+            let mut across = hold.direction;
+            for settled in &self.settled {
+                let along = dot(&across, settled);
+                across = [0, 1, 2].map(|i| across[i] - along * settled[i]);
+            }
+            let square = dot(&across, &across);
+            if square < PARALLEL * PARALLEL {
+                continue;
+            }
+            let more = (hold.velocity - dot(&hold.direction, &self.velocity)) / square;
+            self.velocity = [0, 1, 2].map(|i| self.velocity[i] + more * across[i]);
+            let length = square.sqrt();
+            self.settled.push(across.map(|x| x / length));
+        }
+        self.velocity
+    }
+}
