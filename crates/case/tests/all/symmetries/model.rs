@@ -4,70 +4,13 @@ use std::fmt::Write;
 
 use carom_testing::Random;
 
-/// What is beside a model, far away.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Bystander {
-    /// A heavy block that falls above a plane of its own.
-    Block,
-    /// A rigid block that falls above a plane of its own.
-    Rigid,
-    /// A heavy block that flies fast, and touches nothing.
-    Flier,
-}
-
-/// All of them.
-pub const BYSTANDERS: [Bystander; 3] = [Bystander::Block, Bystander::Rigid, Bystander::Flier];
-
 /// What is changed of a model.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Change {
     /// Velocity added along the plane, m/s.
     pub velocity: f64,
-    /// Turned by a quarter.
-    pub turned: bool,
-    /// x reversed, before the turn.
-    pub mirrored: bool,
     /// Bodies, meshes and contacts in reversed order.
     pub reversed: bool,
-    pub bystander: Option<Bystander>,
-}
-
-impl Default for Change {
-    fn default() -> Change {
-        Change {
-            velocity: 0.0,
-            turned: false,
-            mirrored: false,
-            reversed: false,
-            bystander: None,
-        }
-    }
-}
-
-impl Change {
-    /// A direction after mirror and turn.
-    fn direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
-        let x = if self.mirrored { -x } else { x };
-        if self.turned { [-y, x] } else { [x, y] }
-    }
-
-    /// Lower corner and size of a rectangle after all changes, m.
-    fn rectangle(&self, origin: [f64; 2], size: [f64; 2]) -> [[f64; 2]; 2] {
-        let ends = [origin, [origin[0] + size[0], origin[1] + size[1]]].map(|x| self.direction(x));
-        let low = [0, 1].map(|i| ends[0][i].min(ends[1][i]));
-        let high = [0, 1].map(|i| ends[0][i].max(ends[1][i]));
-        [low, [0, 1].map(|i| high[i] - low[i])]
-    }
-
-    /// The name of a side after mirror and turn, of one along this outward direction.
-    fn side(&self, outward: [f64; 2]) -> &'static str {
-        match self.direction(outward) {
-            [x, _] if x > 0.5 => "right",
-            [x, _] if x < -0.5 => "left",
-            [_, y] if y > 0.5 => "top",
-            _ => "bottom",
-        }
-    }
 }
 
 /// A block of a model.
@@ -129,11 +72,10 @@ impl Model {
         let mut y = 0.0;
         for k in 0..count {
             y += 2e-4 + 1e-4 * of(5) as f64;
-            // each lies on the one below, so that its points have faces opposite them
-            let size = [0.2 - 0.05 * k as f64, 0.05 + 0.01 * of(5) as f64];
+            let size = [0.1 + 0.01 * of(10) as f64, 0.05 + 0.01 * of(5) as f64];
             let fall = 1.0 + of(4) as f64;
             blocks.push(Block {
-                origin: [0.01 * k as f64 + 0.003 * of(5) as f64, y],
+                origin: [0.013 * of(5) as f64, y],
                 size,
                 elements: [1 + of(3), 1 + of(2)],
                 velocity: [0.0, if k == 0 && !on_plane { 0.0 } else { -fall }],
@@ -177,13 +119,10 @@ impl Model {
         let mut meshes: Vec<String> = Vec::new();
         let mut tables: Vec<String> = Vec::new();
         for (k, block) in self.blocks.iter().enumerate() {
-            meshes.push(mesh(&format!("b{k}"), block, change));
+            meshes.push(mesh(&format!("b{k}"), block));
             tables.push(self.body(&format!("b{k}"), block, change));
         }
-        self.contacts(change, &mut tables);
-        if let Some(bystander) = change.bystander {
-            self.beside(bystander, change, (&mut meshes, &mut tables));
-        }
+        self.contacts(&mut tables);
         if change.reversed {
             meshes.reverse();
             tables.reverse();
@@ -199,12 +138,7 @@ impl Model {
     }
 
     fn body(&self, name: &str, block: &Block, change: &Change) -> String {
-        let along = if change.mirrored {
-            -change.velocity
-        } else {
-            change.velocity
-        };
-        let velocity = change.direction([block.velocity[0] + along, block.velocity[1]]);
+        let velocity = [block.velocity[0] + change.velocity, block.velocity[1]];
         let kind = if self.finite { "neo-hooke" } else { "elastic" };
         format!(
             "[material.m{name}]\ndensity = 1000.0\n{kind} = {{ young = {:?}, poisson = 0.3 }}\n\
@@ -214,17 +148,16 @@ impl Model {
         )
     }
 
-    fn contacts(&self, change: &Change, tables: &mut Vec<String>) {
+    fn contacts(&self, tables: &mut Vec<String>) {
         let law = self.law.replace("STIFFNESS", "1e10");
-        let (top, bottom) = (change.side([0.0, 1.0]), change.side([0.0, -1.0]));
+        let (top, bottom) = ("top", "bottom");
         let mut rest = law;
         if self.friction > 0.0 && !self.on_plane {
             let _ = write!(rest, "\nfriction.coulomb = {:?}", self.friction);
         }
         if self.on_plane {
-            let normal = change.direction([0.0, 1.0]);
             tables.push(format!(
-                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = [0.0, 0.0], normal = {normal:?} }}\n{rest}"
+                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n{rest}"
             ));
         }
         for k in 1..self.blocks.len() {
@@ -234,43 +167,10 @@ impl Model {
             ));
         }
     }
-
-    fn beside(
-        &self,
-        bystander: Bystander,
-        change: &Change,
-        (meshes, tables): (&mut Vec<String>, &mut Vec<String>),
-    ) {
-        let block = Block {
-            origin: [40.0, 1.0],
-            size: [2.0, 1.0],
-            elements: [2, 1],
-            velocity: match bystander {
-                Bystander::Flier => [500.0, 0.0],
-                Bystander::Block | Bystander::Rigid => [0.0, -2.0],
-            },
-            young: 1e9,
-        };
-        meshes.push(mesh("z", &block, change));
-        let mut body = self.body("z", &block, change);
-        if bystander == Bystander::Rigid {
-            body += "\nrigid = {}";
-        }
-        tables.push(body);
-        if bystander != Bystander::Flier {
-            tables.push(
-                "[contact.z]\nsecondary = \"z.bottom\"\nobstacle.plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
-                 law.velocity = {}"
-                    .to_owned(),
-            );
-        }
-    }
 }
 
-fn mesh(name: &str, block: &Block, change: &Change) -> String {
-    let [origin, size] = change.rectangle(block.origin, block.size);
-    let [x, y] = block.elements;
-    let elements = if change.turned { [y, x] } else { [x, y] };
+fn mesh(name: &str, block: &Block) -> String {
+    let (origin, size, elements) = (block.origin, block.size, block.elements);
     format!(
         "generate.{name}.rectangle = {{ origin = {origin:?}, size = {size:?}, elements = {elements:?} }}"
     )
