@@ -29,7 +29,7 @@ impl Body {
     }
 
     /// Forces and moments in the sections of each element of beams, in the order of [`Body::cells`]; none of other bodies. `frames`, as in
-    /// [`Placement`], and `history`: of this body at `u`.
+    /// [`Placement`](crate::Placement), and `history`: of this body at `u`.
     pub fn section_forces(
         &self,
         u: &[f64],
