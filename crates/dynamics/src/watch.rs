@@ -29,9 +29,6 @@ struct Between {
 /// more than the whole element from which on a penetration is bad, by what bodies go from one look to the next.
 const DEPTH: f64 = 2.25;
 
-/// Square of the share of a node below which a place on a face is on the edge opposite it.
-const ON_EDGE: f64 = 1e-12;
-
 /// A contact of small sliding.
 #[derive(Debug)]
 struct Watched {
@@ -129,31 +126,9 @@ impl Between {
         let deepest = &mut state.records.contacts[number].between;
         for (k, point) in self.contact.points.iter().enumerate() {
             let node = system.mesh_node[point.node() as usize];
-            if is_within(system, point.node(), rows.row(k)) {
-                deepest.take(-rows.gap(k), node, state.time);
-            }
+            deepest.take(-rows.gap(k), node, state.time);
         }
     }
-}
-
-/// Whether a node is opposite the inside of a face, all of whose nodes are in its row: on an edge it may be beside the surface. Where bodies
-/// have nodes that turn or carry others a row does not tell, and all count.
-fn is_within(system: &System, node: u32, (unknowns, coefficients): (&[u32], &[f64])) -> bool {
-    if !system.initial_frames.is_empty() {
-        return true;
-    }
-    let (mut count, mut last, mut weight) = (0, node, 0.0);
-    let mut counts = |of: u32, weight: f64| count += usize::from(of != node && weight > ON_EDGE);
-    for (&unknown, n) in unknowns.iter().zip(coefficients) {
-        let of = system.unknowns.node(unknown as usize);
-        if of != last {
-            counts(last, weight);
-            (last, weight) = (of, 0.0);
-        }
-        weight += n * n;
-    }
-    counts(last, weight);
-    count >= system.dim
 }
 
 impl Watched {

@@ -61,6 +61,18 @@ pub enum Error {
         /// Lowest frequency of the spectrum, Hz.
         frequency: f64,
     },
+    /// A band of a random load between two of its harmonics, so that the load would be zero.
+    #[error(
+        "a random load over {duration} s has its harmonics at multiples of {} Hz, and none is from {first} to {last} Hz", 1.0 / duration
+    )]
+    NoHarmonic {
+        /// Duration, s.
+        duration: f64,
+        /// Lowest frequency of the spectrum, Hz.
+        first: f64,
+        /// Highest frequency of the spectrum, Hz.
+        last: f64,
+    },
     /// A synthetic record with too long a step.
     #[error(
         "a record with a step of {step} s has nothing at {frequency} Hz: it needs four points in a period at least"

@@ -36,7 +36,8 @@ impl RandomField {
     /// (sin πfτ/πfτ)² of a harmonic, with τ the time between samples; the amplitudes are larger by that factor.
     ///
     /// # Errors
-    /// Points that are no spectrum; a duration shorter than the longest period; more samples at all places than 512 MiB hold.
+    /// Points that are no spectrum; a duration shorter than the longest period, or without a harmonic in the
+    /// band; more samples at all places than 512 MiB hold.
     pub fn at(&self, places: &[f64]) -> Result<Vec<Amplitude>, Error> {
         let [first, last] = self.check()?;
         let density = Amplitude::new(self.spectrum.clone())?;
@@ -51,6 +52,13 @@ impl RandomField {
         let samples = (samples as usize).next_power_of_two();
         let step = self.duration / samples as f64;
         let lines = (first * self.duration).ceil() as usize..=(last * self.duration) as usize;
+        if lines.is_empty() {
+            return Err(Error::NoHarmonic {
+                duration: self.duration,
+                first,
+                last,
+            });
+        }
         let size = |k: usize| {
             let f = k as f64 / self.duration;
             let sinc = (PI * f * step).sin() / (PI * f * step);
@@ -195,6 +203,11 @@ mod tests {
         assert!(matches!(
             with(vec![[0.1, 1.0], [3.0, 1.0]]),
             Err(Error::TooBrief { .. })
+        ));
+        // no multiple of 1/duration
+        assert!(matches!(
+            with(vec![[3.1, 1.0], [3.2, 1.0]]),
+            Err(Error::NoHarmonic { .. })
         ));
         assert_eq!(with(vec![[0.1, 1.0]]), Err(Error::Empty));
         assert!(matches!(

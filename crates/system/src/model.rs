@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
-use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
+use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction};
 use carom_contact::{Initial, Integration, Law, Obstacle, Parts, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
@@ -12,6 +12,7 @@ use carom_schemes::Scheme;
 use crate::adaptive::Adaptive;
 use crate::modal::ModalDamping;
 use crate::nonlinear::Nonlinear;
+use crate::sliding::is_finite;
 
 /// Everything from which a system is built; names are those of the case file.
 #[derive(Clone, Debug)]
@@ -408,12 +409,8 @@ impl Model {
     /// strain or with finite rotations, an obstacle that moves, or a scheme with forces between two states: the energy of its steps is then balanced
     /// by works, not by the identity of the scheme, and a step of fixed size that fails is taken in halves.
     pub fn is_nonlinear(&self) -> bool {
-        let finite = |body: &ModelBody| {
-            let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
-            body.rigid.is_some() || body.spec.material.finite().is_some() || turns
-        };
         self.nonlinear.asks()
-            || self.bodies.iter().any(finite)
+            || self.bodies.iter().any(is_finite)
             || self.bodies.iter().any(damped)
             || self.discrete.iter().any(|some| !some.spec.is_linear())
             || self.scheme.get().is_between()
@@ -422,12 +419,12 @@ impl Model {
     }
 }
 
-fn damped(body: &ModelBody) -> bool {
+pub(crate) fn damped(body: &ModelBody) -> bool {
     let reduced = body.reduced.as_ref();
     body.modal.is_some() || reduced.is_some_and(|reduced| reduced.matrices.damping.is_some())
 }
 
-fn needs_newton(contact: &ModelContact) -> bool {
+pub(crate) fn needs_newton(contact: &ModelContact) -> bool {
     let moves = matches!(&contact.primary, ModelTarget::Rigid(obstacle) if obstacle.motion.moves());
     contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
 }

@@ -79,17 +79,16 @@ impl Zoned {
         self.contacts().iter().enumerate().map(system).collect()
     }
 
-    /// For each contact of the model, whether the steps of its zones are not linear.
-    pub fn nonlinear_contacts(&self) -> Vec<bool> {
-        // between zones
-        let mut nonlinear = vec![true; self.model.contacts.len()];
+    /// For each contact of the model, whether its sides may move far along each other ([`Model::slide_far`]); those between zones may.
+    pub fn slide_far(&self) -> Vec<bool> {
+        let mut far = vec![true; self.model.contacts.len()];
         for (k, contacts) in self.contacts().iter().enumerate() {
-            let zone = self.zone(k, contacts).is_nonlinear();
-            for &contact in contacts {
-                nonlinear[contact] = zone;
+            let of_zone = self.zone(k, contacts).slide_far();
+            for (&contact, slides) in contacts.iter().zip(of_zone) {
+                far[contact] = slides;
             }
         }
-        nonlinear
+        far
     }
 
     /// Zones of the two sides of a contact.

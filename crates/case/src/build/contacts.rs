@@ -208,11 +208,11 @@ impl Builder<'_> {
         }
     }
 
-    /// Gives contacts that do not say how far they slide their default: finite where the steps are not linear anyway.
-    pub(super) fn default_sliding(&self, contacts: &mut [ModelContact], nonlinear: &[bool]) {
-        for (contact, nonlinear) in contacts.iter_mut().zip(nonlinear) {
+    /// Gives contacts that do not say how far they slide their default: finite where their sides may move far.
+    pub(super) fn default_sliding(&self, contacts: &mut [ModelContact], far: &[bool]) {
+        for (contact, far) in contacts.iter_mut().zip(far) {
             let given = self.case.contact.get(&contact.name);
-            if *nonlinear && given.is_some_and(|given| given.sliding.is_none()) {
+            if *far && given.is_some_and(|given| given.sliding.is_none()) {
                 contact.sliding = Sliding::Finite;
             }
         }

@@ -297,8 +297,8 @@ impl Builder<'_> {
 
     /// The model of a case without zones as its steps need it, but for their size.
     fn in_one(&mut self, mut model: Model) -> Model {
-        let nonlinear = vec![model.is_nonlinear(); model.contacts.len()];
-        self.default_sliding(&mut model.contacts, &nonlinear);
+        let far = model.slide_far();
+        self.default_sliding(&mut model.contacts, &far);
         model.critical_fraction = match self.size() {
             (_, Size::Critical(fraction)) => Some(fraction),
             _ => None,
@@ -327,9 +327,9 @@ impl Builder<'_> {
                 links: joints.links,
                 kind: self.plan.kind,
             };
-            let nonlinear = parts.nonlinear_contacts();
+            let far = parts.slide_far();
             for contacts in [&mut model.contacts, &mut parts.model.contacts] {
-                self.default_sliding(contacts, &nonlinear);
+                self.default_sliding(contacts, &far);
             }
             model.dt = self.step(&model.mesh, &model.bodies, || parts.systems())?;
             parts.model.dt = model.dt;

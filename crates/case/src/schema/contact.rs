@@ -29,9 +29,9 @@ pub struct Contact {
     pub itself: Option<bool>,
     /// Contact law.
     pub law: GivenLaw,
-    /// Whether the pairing of the two surfaces follows their motion. Default: `finite` in nonlinear cases (finite
-    /// strain, energy-momentum, friction, mortar, moving obstacles or supports, pressures, tractions, damping, static
-    /// stages), otherwise `small`.
+    /// Whether the pairing of the two surfaces follows their motion. Default: `finite` where the sides may move
+    /// far (friction, mortar, a moving obstacle; a body of the contact that is rigid, at finite strain, with finite
+    /// rotations, damped, loaded or moved; base acceleration, static stages, energy-momentum), otherwise `small`.
     pub sliding: Option<Sliding>,
     /// Where the contact condition is imposed. Default: `node` on linear faces, `mortar` where faces are quadratic,
     /// because forces at the nodes of quadratic faces do not represent the pressure.

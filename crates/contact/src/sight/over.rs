@@ -5,7 +5,7 @@ use carom_mesh::{Face, Projection, is_on};
 use super::across::Across;
 use super::{Sight, View};
 use crate::Places;
-use crate::search::foot_on;
+use crate::search::{diagonal, foot_on, is_beside_rim};
 
 impl Sight {
     /// The views with other faces of the target, whose neighbours are others.
@@ -18,20 +18,28 @@ impl Sight {
 }
 
 impl View<'_> {
-    /// Whether a point at `x` (m) is behind the plane of a face of the target and beyond an edge of it, but before the face across that edge.
+    /// Whether a point at `x` (m) is behind the plane of a face of the target and beyond an edge of it, but beside the body there: before
+    /// the face across that edge, or beyond the rim of the surface that this and the faces beyond it reach.
     pub(crate) fn is_over_neighbour(
         &self,
         (item, foot): (u32, &Projection),
         x: &[f64; 3],
-        (places, faces): (&Places, &[Face]),
+        of: (&Places, &[Face]),
     ) -> bool {
         if foot.inside || foot.gap >= 0.0 {
             return false;
         }
+        let (places, faces) = of;
         let kind = faces[item as usize].kind;
         let beyond = |edge: usize| is_on(kind, edge, &foot.xi);
         let mut others = self.sight.across.of(item).filter(|(edge, _)| beyond(*edge));
-        others.any(|(_, other)| foot_on(places, faces, other, x).0.gap > 0.0)
+        others.any(|(_, other)| {
+            let (across, face) = foot_on(places, faces, other, x);
+            across.gap > 0.0
+                || is_beside_rim(&across, face, || diagonal(places, face))
+                || across.distance < foot.distance
+                    && self.is_over_neighbour((other, &across), x, of)
+        })
     }
 
     /// Faces of the target across the edges of one, which say whether a point beyond these is beside the body.

@@ -152,6 +152,31 @@ fn a_point_that_sees_the_top_of_a_block_alone_is_beside_it_where_it_is_before_it
     assert_eq!(before, f64::INFINITY);
 }
 
+/// A place over a strip of four lines along x, from 0 to 1, seen by a node whose own faces look down.
+fn seen_over_strip(point: [f64; 2]) -> f64 {
+    let mut x: Vec<[f64; 3]> = (0..5).map(|i| [0.25 * f64::from(i), 0.0, 0.0]).collect();
+    let faces: Vec<Face> = (0..4).map(|a| face(Kind::Bar2, &[a + 1, a])).collect();
+    for beside in [-0.1, 0.1, 0.0] {
+        x.push([point[0] + beside, point[1], 0.0]);
+    }
+    let own = vec![face(Kind::Bar2, &[5, 7]), face(Kind::Bar2, &[7, 6])];
+    let mut contact = over(faces, &x);
+    let Target::Surface(faces) = &contact.target else {
+        unreachable!()
+    };
+    contact.sight = Some(Sight::new((&contact.points, &own), faces, &x, Some(2.0)));
+    gap(&contact, 2, &x)
+}
+
+#[test]
+fn a_point_beside_the_rim_is_not_behind_a_face_further_in_however_deep_it_is() {
+    // deeper than one face, two and three are wide: the way to the end of each further face is within 45°
+    for depth in [0.1, 0.3, 0.6, 0.9, 1.5] {
+        assert_eq!(seen_over_strip([1.01, -depth]), f64::INFINITY, "{depth}");
+        assert!((seen_over_strip([0.99, -depth]) + depth).abs() < 1e-15);
+    }
+}
+
 #[test]
 fn the_mean_of_a_face_that_has_fallen_beside_a_surface_and_tilts_takes_nothing_of_it() {
     // the lower left end of the secondary line is 1 mm beside the rim at x = 1 and 20 mm below the plane; tilted by 10°, its shadow, cast
