@@ -149,7 +149,10 @@ pub(crate) fn owners(model: &Model) -> BTreeMap<ElementId, usize> {
 }
 
 /// The bodies of the two sides of a contact; none of a rigid obstacle. `owners`: of [`owners`].
-pub(crate) fn bodies_of(contact: &ModelContact, owners: &BTreeMap<ElementId, usize>) -> [BTreeSet<usize>; 2] {
+pub(crate) fn bodies_of(
+    contact: &ModelContact,
+    owners: &BTreeMap<ElementId, usize>,
+) -> [BTreeSet<usize>; 2] {
     let bodies = |surface: &Surface| -> BTreeSet<usize> {
         let faces = surface.faces.iter();
         let known = faces.filter_map(|face| owners.get(&face.parent));
