@@ -173,7 +173,8 @@ impl Cell {
         }
         // Round-off of positions far from the origin can exceed the last bits of ξ: the point itself decides.
         let miss = norm(&sub(x, &self.point(&xi)));
-        (miss <= 1e-11 * self.size).then_some(xi)
+        let far = x.iter().fold(0.0, |far: f64, x| far.max(x.abs()));
+        (miss <= (1e-11 * self.size).max(4.0 * f64::EPSILON * far)).then_some(xi)
     }
 
     /// Whether a position lies in the cell, its boundary included.

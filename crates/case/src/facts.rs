@@ -7,10 +7,11 @@ use carom_bodies::{
 };
 use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
 use carom_dynamics::{ModelLink, System, step_count};
+use carom_mesh::Parts;
 use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::accelerations::accelerations;
-use crate::build::Built;
+use crate::build::{Built, plural};
 
 /// A line of `carom check`: what, and how much.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,14 +34,16 @@ pub(crate) fn facts_with(built: &Built, words: impl FnOnce(&[Approach]) -> Vec<F
     let system = &built.system;
     let elements: usize = system.bodies.iter().map(|body| body.cells().len()).sum();
     let held = system.fixed.iter().filter(|fixed| **fixed).count();
+    let cells = system.bodies.iter().flat_map(|body| body.cells());
+    let parts = Parts::new(&system.mesh, cells.copied());
     let mut facts = vec![fact(
         "model",
         format!(
-            "{}D, {} nodes, {elements} elements, {} unknowns ({held} held), {} connected parts, {} contact points",
+            "{}D, {} nodes, {elements} elements, {} unknowns ({held} held), {}, {} contact points",
             system.dim,
             system.x.len(),
             system.unknowns(),
-            system.parts.len(),
+            plural(parts.count(), "connected part"),
             system.points()
         ),
     )];

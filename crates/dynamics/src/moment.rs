@@ -41,7 +41,8 @@ pub fn moment<'a>(
             nodal[unknown as usize] = 0.0;
         }
     }
-    let (c, f) = (&about.point, &sum.linear);
+    let c = [0, 1, 2].map(|i| about.point[i] - system.about[i]);
+    let f = &sum.linear;
     [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         sum.angular[i] - (c[j] * f[k] - c[k] * f[j])

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::system::{Levers, System};
 
-/// Force and moment about the origin in the reference configuration; or momentum and angular momentum; or their
+/// Force and moment about a point of the system ([`System::about`]) in the reference configuration; or momentum and angular momentum; or their
 /// impulses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Resultant {
@@ -23,7 +23,7 @@ impl Resultant {
         Resultant::at(system, (&[], &[]), f)
     }
 
-    /// Resultant of nodal forces, with moments about the origin of the nodes at the mean of these displacements from the
+    /// Resultant of nodal forces, with moments about [`System::about`] of the nodes at the mean of these displacements from the
     /// frames; in the reference configuration without any, and in parts of small displacements ([`System::undeformed`]). Moments on
     /// finite rotations, about the axes of their frames, are turned by the mean of the rotations.
     pub(crate) fn at(system: &System, at: (&[Rotation], &[&[f64]]), f: &[f64]) -> Resultant {
@@ -50,7 +50,9 @@ impl Resultant {
                 vector[..dim].copy_from_slice(&values[first..first + dim]);
                 vector
             };
-            let (mut x, force) = (system.x[lever.node as usize], vector(f));
+            let place = &system.x[lever.node as usize];
+            let mut x = [0, 1, 2].map(|i| place[i] - system.about[i]);
+            let force = vector(f);
             if !lever.undeformed {
                 for u in displacements.iter().map(|u| vector(u)) {
                     for i in 0..3 {
@@ -70,10 +72,13 @@ impl Resultant {
                 }
             }
         }
+        let about = Vec3::from(system.about);
         for (unknown, amplitude) in &levers.amplitudes {
+            // rotations of amplitudes are about the origin of coordinates
+            let moved = about.cross(&Vec3::from(amplitude.translation));
             for i in 0..3 {
                 sum.linear[i] += amplitude.translation[i] * f[*unknown];
-                sum.angular[i] += amplitude.rotation[i] * f[*unknown];
+                sum.angular[i] += (amplitude.rotation[i] - moved[i]) * f[*unknown];
             }
         }
         let turning = levers.turning.iter();

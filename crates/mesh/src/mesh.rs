@@ -246,6 +246,13 @@ impl Mesh {
         (0..3).map(|i| extent(i).powi(2)).sum::<f64>().sqrt()
     }
 
+    /// What the place of a node may be beside the true one because its coordinates are rounded, and so the difference of two places, m: two
+    /// roundings of the largest coordinate.
+    pub fn rounding(&self) -> f64 {
+        let coordinates = self.nodes.iter().flatten();
+        2.0 * f64::EPSILON * coordinates.fold(0.0, |largest: f64, x| largest.max(x.abs()))
+    }
+
     /// The defects of these elements, in their order, one per element at most: the first that applies of
     /// repeated node, coordinate not finite, inverted, degenerate.
     ///

@@ -45,6 +45,12 @@ impl Parts {
         }
     }
 
+    /// How many parts there are.
+    pub fn count(&self) -> usize {
+        let leads = |(node, root): (usize, &u32)| node == *root as usize;
+        self.root.iter().enumerate().filter(|of| leads(*of)).count()
+    }
+
     /// The least node of the part that a node is in; none where no cell has it.
     pub fn of(&self, node: u32) -> Option<u32> {
         let mut root = self.root[node as usize];
@@ -107,7 +113,7 @@ mod tests {
         let cells = |name: &str| mesh.groups[name].elements.clone();
         let parts = Parts::new(&mesh, cells("a").into_iter().chain(cells("b")));
         let (a, b): (Vec<u32>, Vec<u32>) = (0..21).partition(|&node| parts.of(node) == Some(0));
-        assert_eq!((a.len(), b.len()), (9, 12));
+        assert_eq!((a.len(), b.len(), parts.count()), (9, 12, 2));
         assert!(b.iter().all(|&node| parts.of(node) == Some(9)));
         // the corners below on the right and on the left
         let (nodes, distance) = mesh.closest_nodes(&a, &b).unwrap();

@@ -13,7 +13,7 @@ use carom_schemes::Scheme;
 use crate::assemblies::Assemblies;
 use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
 use crate::error::Error;
-use crate::initial::settle;
+use crate::initial::{settle, slack};
 use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
@@ -194,7 +194,7 @@ impl System {
                 ..Frames::default()
             },
         };
-        settle(&mut contacts, ways, &places, (&mesh_node, model.length()))?;
+        settle(&mut contacts, ways, &places, (&mesh_node, slack(&model)))?;
         let mut first_point = vec![0];
         for contact in &contacts {
             first_point.push(first_point[first_point.len() - 1] + contact.points.len());
@@ -211,8 +211,9 @@ impl System {
             faces.map(|face| renumbered(face, &number)).collect()
         };
         let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        let about = nearest_corner(&x);
         let origin = match model.contacts.is_empty() {
-            true => nearest_corner(&x),
+            true => about,
             false => [0.0; 3],
         };
         let parts: Vec<Range<usize>> = parts
@@ -269,7 +270,8 @@ impl System {
             undeformed,
             part_of_body,
             origin,
-            tolerance: 1e-12 * model.length(),
+            about,
+            tolerance: (1e-12 * model.length()).max(model.mesh.rounding()),
             axisymmetric,
             dim,
             mesh_node,

@@ -21,7 +21,7 @@ impl Model {
     /// # Errors
     /// [`Error::Penetration`] if some are left after ten passes.
     pub(crate) fn remove_penetrations(&mut self) -> Result<(), Error> {
-        let slack = slack(self.length());
+        let slack = slack(self);
         for pass in 0..PASSES {
             let mut free = true;
             for contact in &self.contacts {
@@ -113,12 +113,12 @@ impl System {
     }
 }
 
-/// Depth that is no penetration yet: the rounding of a mesh of this size.
-fn slack(size: f64) -> f64 {
-    1e-9 * size
+/// Depth that is no penetration yet, m: the rounding of a mesh of this size in this place.
+pub(crate) fn slack(model: &Model) -> f64 {
+    (1e-9 * model.length()).max(model.mesh.rounding())
 }
 
-/// Refuses penetrations, or takes them as gaps of zero, as each contact asks. `size`: of the mesh, m; `mesh_node`: mesh
+/// Refuses penetrations, or takes them as gaps of zero, as each contact asks. `slack`: of [`slack`], m; `mesh_node`: mesh
 /// node of each system node.
 ///
 /// # Errors
@@ -127,9 +127,8 @@ pub(crate) fn settle(
     contacts: &mut [Contact],
     ways: impl Iterator<Item = Initial>,
     places: &Places,
-    (mesh_node, size): (&[u32], f64),
+    (mesh_node, slack): (&[u32], f64),
 ) -> Result<(), Error> {
-    let slack = slack(size);
     for (contact, way) in contacts.iter_mut().zip(ways) {
         match way {
             Initial::Keep => {}

@@ -167,6 +167,7 @@ impl System {
     pub fn facts_of_whole(&self) -> Vec<f64> {
         let mut facts = vec![self.nodes_of_whole as f64];
         facts.extend(self.origin);
+        facts.extend(self.about);
         for (body, diagonal) in self.bodies.iter().zip(&self.diagonals) {
             let most_nodes = body.as_solid().map_or(1, Solid::most_nodes);
             facts.extend([body.smallest_size(), most_nodes as f64, *diagonal]);
@@ -181,6 +182,7 @@ impl System {
         let mut next = || facts.next().unwrap_or_default();
         self.nodes_of_whole = next() as usize;
         self.origin = [0; 3].map(|_| next());
+        self.about = [0; 3].map(|_| next());
         for (body, diagonal) in self.bodies.iter_mut().zip(&mut self.diagonals) {
             let sizes = (next(), next() as usize);
             if let Body::Solid(solid) = body {
@@ -216,6 +218,7 @@ impl System {
             mesh: Arc::clone(&self.mesh),
             dim: self.dim,
             origin: self.origin,
+            about: self.about,
             axisymmetric: self.axisymmetric,
             x: nodes().map(|node| self.x[node]).collect(),
             mesh_node: nodes().map(|node| self.mesh_node[node]).collect(),

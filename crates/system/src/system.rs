@@ -33,6 +33,9 @@ pub struct System {
     /// Where places count from in what rounding leaves in forces, m: zero, since gaps are differences of places; without
     /// contacts the corner of the mesh nearest to it, since bodies and links do not see where they lie.
     pub origin: [f64; 3],
+    /// The point that moments and angular momenta are about, m: the point of the box around the mesh that is nearest to the origin of
+    /// coordinates, which is that itself where the box holds it. Arms are then no longer than the model is large, wherever it lies.
+    pub about: [f64; 3],
     /// Whether bodies are axisymmetric: x is then a radius.
     pub axisymmetric: bool,
     /// Reference coordinates by system number, m.
@@ -90,7 +93,8 @@ pub struct System {
     pub(crate) of_many: Vec<bool>,
     /// First contact point of each contact in the arrays over all points, and one end more.
     pub first_point: Vec<usize>,
-    /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`](crate::Model::length)).
+    /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`](crate::Model::length)), or the
+    /// rounding of its coordinates ([`Mesh::rounding`](carom_mesh::Mesh::rounding)) where that is larger.
     pub tolerance: f64,
     /// Time scheme; of several the first one.
     pub scheme: Scheme,

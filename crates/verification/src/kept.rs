@@ -30,7 +30,7 @@ impl Kept {
                 centre[i] += m * (system.x[node as usize][i] + state.motion.u[at]);
             }
         }
-        let centre = centre.map(|moment| moment / mass);
+        let centre = [0, 1, 2].map(|i| centre[i] / mass - system.about[i]);
         let linear = size(start.momentum.linear);
         let angular = size(about(&start.momentum, centre));
         Kept {
@@ -67,7 +67,7 @@ fn size(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Angular momentum about a place at rest: L - c × p.
+/// Angular momentum about a place at rest: L - c × p, with `centre` from the point that L is about.
 fn about(momentum: &Resultant, centre: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);

@@ -8,6 +8,8 @@ use crate::schema::Scheme;
 /// A pair with the reason against it; the chapter says it in the same words.
 struct Advice {
     is: fn(&Scheme, &Law) -> bool,
+    /// Whether it is for nodes that have mass.
+    of_masses: bool,
     reason: &'static str,
 }
 
@@ -18,34 +20,41 @@ const AGAINST: [Advice; 7] = [
             matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5 && s.beta == 0.25)
                 && is_plain(law)
         },
+        of_masses: true,
         reason: "the trapezoidal rule with the displacement law gains energy below a Courant number of about 4",
     },
     Advice {
         is: |scheme, law| {
             matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5) && is_velocity(law)
         },
+        of_masses: false,
         reason: "Newmark's scheme without damping opens and closes the contact at every other step under the velocity law",
     },
     Advice {
         is: |scheme, law| matches!(scheme, Scheme::Theta(s) if s.theta == 0.5) && is_plain(law),
+        of_masses: false,
         reason: "theta = 1/2 with the displacement law has a force that oscillates about the exact one without decay",
     },
     Advice {
         is: |scheme, law| {
             matches!(scheme, Scheme::LaursenChawla(_)) && (is_plain(law) || is_velocity(law))
         },
+        of_masses: false,
         reason: "the scheme of Laursen and Chawla conserves the energy, but the contact chatters and its force is useless",
     },
     Advice {
         is: |scheme, _| matches!(scheme, Scheme::LaursenLove(_)),
+        of_masses: false,
         reason: "the scheme of Laursen and Love conserves the energy, but the contact chatters and its force is useless",
     },
     Advice {
         is: |scheme, _| matches!(scheme, Scheme::Kane(s) if s.gamma == 0.5),
+        of_masses: false,
         reason: "Kane's scheme without damping has a force that oscillates about the exact one without decay",
     },
     Advice {
         is: |scheme, law| matches!(scheme, Scheme::Hht(_)) && is_plain(law),
+        of_masses: false,
         reason: "the scheme of Hilber, Hughes and Taylor with the displacement law chatters and gains energy over many impacts",
     },
 ];
@@ -59,12 +68,14 @@ fn is_velocity(law: &Law) -> bool {
     matches!(law, Law::Velocity(_))
 }
 
-/// Why a pair is advised against.
-pub(super) fn against(scheme: &Scheme, law: &Law) -> impl Iterator<Item = &'static str> {
-    let all = AGAINST
-        .iter()
-        .filter(move |advice| (advice.is)(scheme, law));
-    all.map(|advice| advice.reason)
+/// Why a pair is advised against; `massless`: nodes without mass take no energy as they close.
+pub(super) fn against(
+    scheme: &Scheme,
+    law: &Law,
+    massless: bool,
+) -> impl Iterator<Item = &'static str> {
+    let is = move |advice: &&Advice| (advice.is)(scheme, law) && !(massless && advice.of_masses);
+    AGAINST.iter().filter(is).map(|advice| advice.reason)
 }
 
 #[cfg(test)]

@@ -121,7 +121,7 @@ pub(super) fn dimensions(dim: usize) -> String {
     plural(dim, "dimension")
 }
 
-pub(super) fn plural(count: usize, noun: &str) -> String {
+pub(crate) fn plural(count: usize, noun: &str) -> String {
     if count == 1 {
         format!("1 {noun}")
     } else {

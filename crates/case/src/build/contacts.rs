@@ -330,7 +330,9 @@ impl Builder<'_> {
                 ));
             }
             if !self.case.time.is_static() {
-                let against = advice::against(&scheme, &contact.law);
+                let given = self.case.contact.get(name);
+                let massless = given.is_some_and(|of| of.nodes == schema::Nodes::Massless);
+                let against = advice::against(&scheme, &contact.law, massless);
                 let told = against.map(|reason| {
                     format!(
                         "contact `{name}`: {reason}; use the velocity law with the theta scheme"

@@ -63,7 +63,9 @@ use crate::schema::{Case, Motion};
 pub use added::AddedForce;
 pub use arlequin::BuiltOverlap;
 use arlequin::Joints;
-use builder::{Builder, dimensions, plural};
+pub(crate) use builder::plural;
+use builder::{Builder, dimensions};
+use pieces::Joining;
 pub use reference::ExactReference;
 use time::Size;
 
@@ -234,7 +236,6 @@ impl Builder<'_> {
         if !self.problems.is_empty() {
             return None;
         }
-        self.pieces(&mesh, &bodies);
         self.unglued(&mesh, &bodies);
         let joined = hinged::Joined {
             constraints: &constraints,
@@ -253,6 +254,13 @@ impl Builder<'_> {
         contacts.extend(self.general_contact(&mesh, (&bodies, &cells), (&contacts, &joints)));
         self.contacts_of_deleted(&bodies, &contacts);
         contacts.extend(self.stops(&mesh, &bodies, &discrete));
+        let joining = Joining {
+            contacts: &contacts,
+            constraints: &constraints,
+            links: &joints.links,
+            discrete: &discrete,
+        };
+        self.pieces(&mesh, &bodies, &joining);
         self.nonlinear_in_zones();
         self.stresses_between(&bodies);
         self.explicit_alone(&bodies);

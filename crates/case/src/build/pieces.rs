@@ -2,17 +2,53 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_dynamics::ModelBody;
+use carom_dynamics::{
+    ModelBody, ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelTarget,
+};
 use carom_mesh::{Mesh, Parts};
 
 use super::Builder;
 use super::arlequin::is_thin;
 
+/// What joins pieces of bodies beside common nodes.
+pub(super) struct Joining<'a> {
+    pub(super) contacts: &'a [ModelContact],
+    pub(super) constraints: &'a [ModelConstraint],
+    pub(super) links: &'a [ModelLink],
+    pub(super) discrete: &'a [ModelDiscrete],
+}
+
+impl Joining<'_> {
+    /// The parts of the bodies, those that are joined as one.
+    fn parts(&self, mesh: &Mesh, bodies: &[ModelBody]) -> Parts {
+        let solids = bodies.iter().flat_map(|body| &body.spec.cells);
+        let discrete = self.discrete.iter().flat_map(|some| &some.spec.cells);
+        let mut parts = Parts::new(mesh, solids.chain(discrete).copied());
+        for contact in self.contacts {
+            let mut nodes = contact.secondary.nodes.clone();
+            if let ModelTarget::Surface(primary) = &contact.primary {
+                nodes.extend(&primary.nodes);
+                parts.join(&nodes);
+            }
+        }
+        for row in self.constraints.iter().flat_map(|all| &all.rows) {
+            let nodes: Vec<u32> = row.iter().map(|(node, ..)| *node).collect();
+            parts.join(&nodes);
+        }
+        for row in self.links.iter().flat_map(|link| &link.rows) {
+            let terms = row.inner.iter().chain(&row.outer);
+            let nodes: Vec<u32> = terms.map(|term| term.node).collect();
+            parts.join(&nodes);
+        }
+        parts
+    }
+}
+
 impl Builder<'_> {
-    /// Warns of bodies in pieces that nothing joins, not even another body, and names the closest nodes of two of them.
-    pub(super) fn pieces(&mut self, mesh: &Mesh, bodies: &[ModelBody]) {
-        let cells = bodies.iter().flat_map(|body| &body.spec.cells);
-        let parts = Parts::new(mesh, cells.copied());
+    /// Warns of bodies in pieces that nothing joins, neither another body nor a contact, a tie or a spring, and names the closest nodes of
+    /// two of them.
+    pub(super) fn pieces(&mut self, mesh: &Mesh, bodies: &[ModelBody], joining: &Joining) {
+        let parts = joining.parts(mesh, bodies);
         for body in bodies {
             let pieces = pieces_of(mesh, body, &parts);
             let Some(largest) = pieces.iter().rev().max_by_key(|piece| piece.len()) else {

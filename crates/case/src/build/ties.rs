@@ -53,7 +53,7 @@ impl<'a> Ties<'a> {
 
     /// The rows that tie two bodies at all nodes at the same place; of two beams the rotations too.
     pub(super) fn rows(&self, inner: usize, outer: usize) -> Result<Rows, Error> {
-        let tolerance = COINCIDENT * self.mesh.size();
+        let tolerance = (COINCIDENT * self.mesh.size()).max(self.mesh.rounding());
         let rows = trace(self.mesh, &self.nodes[inner], &self.nodes[outer], tolerance)?;
         let bends = |body: usize| self.bodies[body].spec.kinematics.rotations().is_some();
         Ok(match bends(inner) && bends(outer) {

@@ -11,7 +11,7 @@ use crate::compare::Nobody;
 use crate::resume::{after, cases, content, open, run, words};
 
 /// A case file and the overrides that make it small.
-type Small = (&'static str, &'static [&'static str]);
+pub type Small = (&'static str, &'static [&'static str]);
 
 /// Bars, and masses on stops.
 const BARS: &[Small] = &[
@@ -27,7 +27,7 @@ const BARS: &[Small] = &[
 ];
 
 /// Beams, shells, and what is reduced to modes.
-const THIN: &[Small] = &[
+pub const THIN: &[Small] = &[
     ("beam-on-stop/case.toml", &[]),
     ("dropped-box/case.toml", &[]),
     ("flexible-pendulum/case.toml", &[]),
@@ -45,7 +45,7 @@ const THIN: &[Small] = &[
 ];
 
 /// Plane and axisymmetric bodies.
-const PLANE: &[Small] = &[
+pub const PLANE: &[Small] = &[
     ("conveyor/case.toml", &[]),
     ("crushed-tube/case.toml", &["mesh.file=\"tube-coarse.msh\""]),
     ("oblique-bar/case.toml", &["mesh.file=\"bar-coarse.msh\""]),
@@ -61,7 +61,7 @@ const PLANE: &[Small] = &[
 ];
 
 /// Static stages, of more steps than one.
-const STATIC: &[Small] = &[
+pub const STATIC: &[Small] = &[
     ("blocks-non-matching/case-solid.toml", &[]),
     ("blocks-non-matching/case.toml", &[]),
     (
@@ -80,7 +80,7 @@ const STATIC: &[Small] = &[
 ];
 
 /// Solids.
-const SOLID: &[Small] = &[
+pub const SOLID: &[Small] = &[
     ("bird-on-plate/case.toml", &[]),
     ("block-drop/case.toml", &[]),
     (
@@ -96,7 +96,7 @@ const SOLID: &[Small] = &[
 ];
 
 /// Solids in zones, and beside beams, shells and masses.
-const MIXED: &[Small] = &[
+pub const MIXED: &[Small] = &[
     ("assembly-row/case-5.toml", &[]),
     ("beam-and-solid/case-solid.toml", &[]),
     ("beam-and-solid/case.toml", &[]),

@@ -155,3 +155,73 @@ fn a_body_that_is_held_without_a_static_stage_is_refused() {
         problems[0].message
     );
 }
+
+/// Two cubes of one cell, the upper one on the lower one, in one set: a body of two pieces.
+const CUBES: &str = "*NODE, NSET=NALL
+1,0.,0.,0.\n2,2.,0.,0.\n3,2.,2.,0.\n4,0.,2.,0.\n5,0.,0.,2.\n6,2.,0.,2.\n7,2.,2.,2.\n8,0.,2.,2.
+11,0.5,0.5,2.\n12,1.5,0.5,2.\n13,1.5,1.5,2.\n14,0.5,1.5,2.\n15,0.5,0.5,3.\n16,1.5,0.5,3.\n17,1.5,1.5,3.\n18,0.5,1.5,3.
+*ELEMENT, TYPE=C3D8, ELSET=LOW\n1,1,2,3,4,5,6,7,8
+*ELEMENT, TYPE=C3D8, ELSET=HIGH\n2,11,12,13,14,15,16,17,18
+*ELSET, ELSET=ALL\nLOW,HIGH
+*NSET, NSET=FLOOR\n1,2,3,4
+*NSET, NSET=RAIL\n15,16,17,18
+*SURFACE, NAME=LOWTOP\n1,S2
+*SURFACE, NAME=HIGHFOOT\n2,S1
+*SURFACE, NAME=HIGHTOP\n2,S2
+";
+
+/// The cubes pressed together, with this contact.
+fn cubes(contact: &str) -> (Vec<String>, Vec<carom_case::Fact>, Option<f64>) {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("cubes.inp"), CUBES).unwrap();
+    let text = format!(
+        r#"
+carom = 1
+mesh = {{ file = "cubes.inp", unit = "mm" }}
+material.steel = {{ density = 7800.0, elastic = {{ young = "210 GPa", poisson = 0.0 }} }}
+body.all = {{ region = "ALL", material = "steel" }}
+support.floor = {{ on = "FLOOR", fix = ["x", "y", "z"] }}
+support.rail = {{ on = "RAIL", fix = ["x", "y"] }}
+load.p = {{ on = "HIGHTOP", pressure = "100 MPa" }}
+time = {{ end = 1.0, static = {{ end = 1.0, steps = 2 }} }}
+{contact}
+"#
+    );
+    let file = folder.path().join("case.toml");
+    std::fs::write(&file, text).unwrap();
+    let input = Input::read(&file, &[]).unwrap();
+    let (case, locator) = parse(&input).unwrap();
+    let built = build(&case, &locator, &input).unwrap();
+    let facts = carom_case::facts(&built);
+    let results = folder.path().join("results");
+    let finished = carom_case::run(
+        (&input, &case, &built),
+        results,
+        &mut crate::compare::Nobody,
+        &|| false,
+    );
+    let force = finished.ok().and_then(|finished| {
+        let contact = finished.summary.contacts.get("c")?;
+        Some(contact.peak_force)
+    });
+    (built.warnings, facts, force)
+}
+
+#[test]
+fn a_body_of_pieces_that_a_contact_joins_is_in_equilibrium_as_two_bodies_are() {
+    let (warnings, facts, force) = cubes(
+        r#"contact.c = { secondary = "HIGHFOOT", primary = "LOWTOP", law.displacement = {} }"#,
+    );
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let model = facts.iter().find(|fact| fact.name == "model").unwrap();
+    assert!(model.value.contains("2 connected parts"), "{}", model.value);
+    // 100 MPa on 1 mm²; the tolerance of the iterations is 1e-10
+    let force = force.unwrap();
+    assert!((force / 100.0 - 1.0).abs() < 1e-8, "{force}");
+    // without the contact they separate
+    let (warnings, ..) = cubes("");
+    assert!(
+        warnings.iter().any(|told| told.contains("in 2 pieces")),
+        "{warnings:?}"
+    );
+}

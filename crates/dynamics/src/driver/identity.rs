@@ -322,8 +322,8 @@ fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
     }
 }
 
-/// Energies and momentum of a motion with this strain energy (J): |a|²_M where it is asked for, angular momentum about the origin
-/// of the nodes at these displacements, or in the reference configuration.
+/// Energies and momentum of a motion with this strain energy (J): |a|²_M where it is asked for, angular momentum about
+/// [`System::about`] of the nodes at these displacements, or in the reference configuration.
 pub(super) fn energies(
     system: &System,
     motion: &Motion,

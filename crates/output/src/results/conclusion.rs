@@ -324,11 +324,14 @@ fn momentum(system: &System, last: &Last, linked: bool) -> Momentum {
     }
 }
 
-/// `momentum`: size that linear momenta are compared with, N s. Times the largest distance of a node from the origin it is
-/// one for angular momenta: |Σ x × m v| ≤ max |x| Σ |m v|.
+/// `momentum`: size that linear momenta are compared with, N s. Times the largest distance of a node from the point of
+/// the balance it is one for angular momenta: |Σ x × m v| ≤ max |x| Σ |m v|.
 fn angular(system: &System, ledger: &Ledger, linked: bool, momentum: f64) -> Angular {
     let (start, end) = (&ledger.initial, &ledger.balance);
-    let distance = |x: &[f64; 3]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let distance = |x: &[f64; 3]| {
+        let arm = x.iter().zip(&system.about).map(|(x, about)| x - about);
+        arm.map(|x| x * x).sum::<f64>().sqrt()
+    };
     let farthest = system.x.iter().map(distance).fold(0.0, f64::max);
     let size = ledger.largest_angular_momentum.max(farthest * momentum);
     let impulses = [
@@ -339,6 +342,7 @@ fn angular(system: &System, ledger: &Ledger, linked: bool, momentum: f64) -> Ang
     let links = linked.then_some(("links", end.impulse_links.angular));
     let impulses = impulses.into_iter().chain(links);
     Angular {
+        about: system.about,
         initial: start.momentum.angular,
         r#final: end.momentum.angular,
         impulses: impulses

@@ -297,9 +297,12 @@ pub struct Momentum {
     pub angular: Option<Angular>,
 }
 
-/// Balance of angular momentum about the origin, N m s.
+/// Balance of angular momentum about a point, N m s.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Angular {
+    /// The point, m: of the box around the mesh the one that is nearest to the origin of coordinates.
+    #[serde(default)]
+    pub about: [f64; 3],
     /// At the start.
     pub initial: [f64; 3],
     /// At the end.
@@ -309,7 +312,7 @@ pub struct Angular {
     /// Final - initial - Σ impulses. Not checked: few schemes keep it in large rotations.
     pub residual: [f64; 3],
     /// Largest component of the residual over the run, relative to the largest angular momentum or impulse of a moment, or to
-    /// the size of the linear momentum times the largest distance of a node from the origin if that is larger.
+    /// the size of the linear momentum times the largest distance of a node from the point if that is larger.
     #[serde(with = "float")]
     pub relative_residual: f64,
 }

@@ -5,12 +5,70 @@ use std::fmt::Write;
 use carom_testing::Random;
 
 /// What is changed of a model.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct Change {
     /// Velocity added along the plane, m/s.
     pub velocity: f64,
     /// Bodies, meshes and contacts in reversed order.
     pub reversed: bool,
+    /// Factor of lengths and times: velocities and strains stay.
+    pub scale: f64,
+    /// Axes turned by 90°.
+    pub turned: bool,
+    /// x reversed.
+    pub mirrored: bool,
+    /// Distance of the origin, m.
+    pub distance: f64,
+    /// What is far away besides.
+    pub bystander: Option<Bystander>,
+}
+
+impl Default for Change {
+    fn default() -> Change {
+        Change {
+            velocity: 0.0,
+            reversed: false,
+            scale: 1.0,
+            turned: false,
+            mirrored: false,
+            distance: 0.0,
+            bystander: None,
+        }
+    }
+}
+
+/// A body that touches nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bystander {
+    /// One that flies, and is larger.
+    Flies,
+    /// A rigid one that flies.
+    Rigid,
+    /// One that a load moves.
+    Loaded,
+}
+
+impl Change {
+    /// Components of a vector.
+    fn turn(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let x = if self.mirrored { -x } else { x };
+        if self.turned { [-y, x] } else { [x, y] }
+    }
+
+    /// A place.
+    fn place(&self, x: [f64; 2]) -> [f64; 2] {
+        let [x, y] = self.turn(x.map(|x| self.scale * x));
+        [x + self.distance, y - 0.3 * self.distance]
+    }
+
+    /// The name of a side of a block.
+    fn side(&self, side: &'static str) -> &'static str {
+        match (side, self.turned) {
+            ("bottom", true) => "right",
+            ("top", true) => "left",
+            (side, _) => side,
+        }
+    }
 }
 
 /// A block of a model.
@@ -43,6 +101,9 @@ const LAWS: [&str; 5] = [
     "law.velocity = { capture = \"half\" }",
 ];
 
+/// Least speed of a block that falls, m/s.
+const SPEED: f64 = 1.0;
+
 const SCHEMES: [&str; 3] = [
     "scheme.theta = { theta = 0.5 }",
     "scheme.newmark = {}",
@@ -73,7 +134,7 @@ impl Model {
         for k in 0..count {
             y += 2e-4 + 1e-4 * of(5) as f64;
             let size = [0.1 + 0.01 * of(10) as f64, 0.05 + 0.01 * of(5) as f64];
-            let fall = 1.0 + of(4) as f64;
+            let fall = SPEED + of(4) as f64;
             blocks.push(Block {
                 origin: [0.013 * of(5) as f64, y],
                 size,
@@ -96,7 +157,12 @@ impl Model {
 
     /// Least speed of a block that falls, m/s.
     pub fn speed(&self) -> f64 {
-        1.0
+        SPEED
+    }
+
+    /// Whether a change has it: explicit steps have no rigid bodies.
+    pub fn takes(&self, bystander: Bystander) -> bool {
+        !(self.explicit && bystander == Bystander::Rigid)
     }
 
     /// What its solves leave, relative.
@@ -119,10 +185,13 @@ impl Model {
         let mut meshes: Vec<String> = Vec::new();
         let mut tables: Vec<String> = Vec::new();
         for (k, block) in self.blocks.iter().enumerate() {
-            meshes.push(mesh(&format!("b{k}"), block));
+            meshes.push(mesh(&format!("b{k}"), block, change));
             tables.push(self.body(&format!("b{k}"), block, change));
         }
-        self.contacts(&mut tables);
+        self.contacts(&mut tables, change);
+        if let Some(bystander) = change.bystander {
+            self.add(bystander, change, (&mut meshes, &mut tables));
+        }
         if change.reversed {
             meshes.reverse();
             tables.reverse();
@@ -131,33 +200,65 @@ impl Model {
             "carom = 1\n[mesh]\n{}\n{}\n[time]\nend = {:?}\nstep = {:?}\n{}\n",
             meshes.join("\n"),
             tables.join("\n"),
-            self.end(),
-            self.step(),
+            change.scale * self.end(),
+            change.scale * self.step(),
             self.scheme
         )
     }
 
     fn body(&self, name: &str, block: &Block, change: &Change) -> String {
-        let velocity = [block.velocity[0] + change.velocity, block.velocity[1]];
+        let velocity = change.turn([block.velocity[0] + change.velocity, block.velocity[1]]);
         let kind = if self.finite { "neo-hooke" } else { "elastic" };
         format!(
             "[material.m{name}]\ndensity = 1000.0\n{kind} = {{ young = {:?}, poisson = 0.3 }}\n\
-             [body.{name}]\nregion = \"{name}\"\nmaterial = \"m{name}\"\nsection.plane-strain.thickness = 1.0\n\
+             [body.{name}]\nregion = \"{name}\"\nmaterial = \"m{name}\"\nsection.plane-strain.thickness = {:?}\n\
              initial.velocity = {velocity:?}",
-            block.young
+            block.young, change.scale
         )
     }
 
-    fn contacts(&self, tables: &mut Vec<String>) {
-        let law = self.law.replace("STIFFNESS", "1e10");
-        let (top, bottom) = ("top", "bottom");
+    fn add(
+        &self,
+        bystander: Bystander,
+        change: &Change,
+        (meshes, tables): (&mut Vec<String>, &mut Vec<String>),
+    ) {
+        let block = Block {
+            origin: [40.0, 30.0],
+            size: [2.0, 1.0],
+            elements: [2, 1],
+            velocity: match bystander {
+                Bystander::Loaded => [0.0; 2],
+                _ => [30.0, 50.0],
+            },
+            young: 1e9,
+        };
+        meshes.push(mesh("z", &block, change));
+        let mut body = self.body("z", &block, change);
+        if bystander == Bystander::Rigid {
+            body += "\nrigid = {}";
+        }
+        tables.push(body);
+        if bystander == Bystander::Loaded {
+            let load = "[load.z]\non = \"z.top\"\ntraction = [0.0, 1e6]";
+            tables.push(load.to_owned());
+        }
+    }
+
+    fn contacts(&self, tables: &mut Vec<String>, change: &Change) {
+        let law = self
+            .law
+            .replace("STIFFNESS", &format!("{:?}", 1e10 / change.scale));
+        let [top, bottom] = ["top", "bottom"].map(|side| change.side(side));
         let mut rest = law;
         if self.friction > 0.0 && !self.on_plane {
             let _ = write!(rest, "\nfriction.coulomb = {:?}", self.friction);
         }
         if self.on_plane {
             tables.push(format!(
-                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n{rest}"
+                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = {:?}, normal = {:?} }}\n{rest}",
+                change.place([0.0, 0.0]),
+                change.turn([0.0, 1.0]),
             ));
         }
         for k in 1..self.blocks.len() {
@@ -169,8 +270,15 @@ impl Model {
     }
 }
 
-fn mesh(name: &str, block: &Block) -> String {
-    let (origin, size, elements) = (block.origin, block.size, block.elements);
+fn mesh(name: &str, block: &Block, change: &Change) -> String {
+    let far = [0, 1].map(|i| block.origin[i] + block.size[i]);
+    let [one, other] = [block.origin, far].map(|x| change.place(x));
+    let origin = [0, 1].map(|i| one[i].min(other[i]));
+    let (mut size, mut elements) = (block.size.map(|x| change.scale * x), block.elements);
+    if change.turned {
+        size.reverse();
+        elements.reverse();
+    }
     format!(
         "generate.{name}.rectangle = {{ origin = {origin:?}, size = {size:?}, elements = {elements:?} }}"
     )

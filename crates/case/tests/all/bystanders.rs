@@ -1,0 +1,140 @@
+//! A body that touches nothing, far from all others, changes neither the forces nor the grades of any case of the project.
+//!
+//! Twenty steps of each at its smallest. The body is elastic, flies, and steps as all do. What is solved at once differs by the rounding of the
+//! order of sums, what is iterated by the tolerance of the iterations: 1e-6 of the largest force of the case covers both, twenty steps of 1e-10
+//! times the condition of the equations of a contact, a thousand.
+
+use std::collections::BTreeMap;
+
+use carom_case::{Built, Input, build, parse};
+use carom_mesh::Mesh;
+use carom_output::{Grade, Summary};
+
+use crate::compare::Nobody;
+use crate::resume::{after, cases, words};
+use crate::resume_cases::{MIXED, PLANE, SOLID, STATIC, Small, THIN};
+
+/// Steps of each run.
+const STEPS: u64 = 20;
+
+/// What is compared of it.
+const BOUND: f64 = 1e-6;
+
+/// The keys that add the body to a case in a mesh of this size; none where each body has to be in a zone, or where each has to be of a kind.
+fn far(text: &str, mesh: &Mesh) -> Option<Vec<String>> {
+    if text.contains("[zone") || text.contains("zone.") {
+        return None;
+    }
+    let size = mesh.size();
+    let corner = |i: usize| mesh.nodes.iter().map(|x| x[i]).fold(f64::MIN, f64::max);
+    let at = [0, 1, 2].map(|i| corner(i) + 10.0 * size);
+    let (shape, section) = match mesh.dim {
+        1 => return None,
+        2 if text.contains("section.axisymmetric") => {
+            ("rectangle", Some("section.axisymmetric={}"))
+        }
+        2 => (
+            "rectangle",
+            Some("section.plane-strain.thickness=\"10 mm\""),
+        ),
+        _ => ("box", None),
+    };
+    let vector = |values: &[f64]| format!("{:?}", &values[..mesh.dim]);
+    let mut keys = vec![
+        format!(
+            "mesh.generate.zz.{shape}={{origin={},size={},elements={:?}}}",
+            vector(&at),
+            vector(&[size; 3]),
+            &[1; 3][..mesh.dim]
+        ),
+        "material.zz={density=1000.0,elastic={young=1e9,poisson=0.3}}".to_owned(),
+        "body.zz.region=\"zz\"".to_owned(),
+        "body.zz.material=\"zz\"".to_owned(),
+        format!("body.zz.initial.velocity={}", vector(&[3.0, 2.0, 1.0])),
+    ];
+    if text.contains("static") {
+        keys.push("body.zz.hold=true".to_owned());
+    }
+    keys.extend(section.map(|section| format!("body.zz.{section}")));
+    Some(keys)
+}
+
+/// A case and what it amounts to.
+fn built(name: &str, overrides: &[String]) -> (Input, carom_case::schema::Case, Built) {
+    let input = Input::read(&cases().join(name), overrides);
+    let input = input.unwrap_or_else(|problems| panic!("{name}: {problems:?}"));
+    let (case, locator) = parse(&input).unwrap_or_else(|problems| panic!("{name}: {problems:?}"));
+    let built = build(&case, &locator, &input);
+    let built = built.unwrap_or_else(|problems| panic!("{name}: {problems:?}"));
+    (input, case, built)
+}
+
+fn summary((input, case, built): &(Input, carom_case::schema::Case, Built)) -> Summary {
+    let folder = tempfile::tempdir().unwrap();
+    let ended = carom_case::run(
+        (input, case, built),
+        folder.path().join("results"),
+        &mut Nobody,
+        &after(STEPS),
+    );
+    ended.unwrap().summary
+}
+
+fn grades(summary: &Summary) -> BTreeMap<&str, Grade> {
+    let lines = summary.verdict.lines.iter();
+    lines.map(|line| (line.name.as_str(), line.grade)).collect()
+}
+
+fn unchanged(list: &[Small]) {
+    let mut broken = Vec::new();
+    for &(name, overrides) in list {
+        let mut overrides = words(overrides);
+        let alone = built(name, &overrides);
+        let text = std::fs::read_to_string(cases().join(name)).unwrap();
+        let Some(body) = far(&text, &alone.2.system.mesh) else {
+            continue;
+        };
+        overrides.extend(body);
+        let [alone, beside] = [alone, built(name, &overrides)].map(|of| summary(&of));
+        let peak = |of: &Summary, contact: &str| of.contacts[contact].peak_force;
+        let largest = alone
+            .contacts
+            .keys()
+            .map(|of| peak(&alone, of))
+            .fold(0.0, f64::max);
+        for contact in alone.contacts.keys() {
+            let [one, other] = [&alone, &beside].map(|of| peak(of, contact));
+            if (one - other).abs() > BOUND * largest {
+                broken.push(format!("{name}: {contact}: {one:e} N, {other:e} N"));
+            }
+        }
+        let [one, other] = [&alone, &beside].map(grades);
+        for (line, grade) in one {
+            if other.get(line) != Some(&grade) {
+                broken.push(format!("{name}: {line}: {grade:?}, {:?}", other.get(line)));
+            }
+        }
+    }
+    assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn cases_of_thin_bodies_do_not_see_a_body_far_away() {
+    unchanged(THIN);
+}
+
+#[test]
+fn cases_of_plane_bodies_do_not_see_a_body_far_away() {
+    unchanged(PLANE);
+}
+
+#[test]
+fn static_cases_do_not_see_a_body_far_away() {
+    unchanged(STATIC);
+}
+
+#[test]
+fn cases_of_solids_do_not_see_a_body_far_away() {
+    unchanged(SOLID);
+    unchanged(MIXED);
+}
