@@ -43,7 +43,7 @@ impl Search {
         if point.crosses() {
             return self.faces.crossed(places, faces, point);
         }
-        let (foot, face) = self.facing(places, faces, view, &point.place(places))?;
+        let (foot, face) = self.facing(places, faces, (point, view))?;
         Some(Opposite {
             point: *point,
             foot,

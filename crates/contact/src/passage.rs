@@ -76,8 +76,8 @@ impl Contact {
                 let passes = |&k: &usize| {
                     let entered = entered(&self.points[k], given, ways, (&search.faces, &mut room));
                     entered.is_some_and(|normal| {
-                        let x = self.points[k].place(end);
-                        let found = search.facing(end, faces, self.view(k), &x);
+                        let of = (&self.points[k], self.view(k));
+                        let found = search.facing(end, faces, of);
                         !found.is_some_and(|(foot, _)| {
                             foot.gap < 0.0 && dot(&foot.normal, &normal) > 0.0
                         })

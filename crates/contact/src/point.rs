@@ -8,8 +8,9 @@ use crate::Places;
 /// A point of the secondary surface that carries a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Nodes of its face, by system number; the first `count` are used. For a node, itself.
+    /// Nodes of its face, by system number; the first `count` are used. For a node, itself; behind it `beside` others of its faces.
     nodes: [u32; MAX_FACE_NODES],
+    beside: usize,
     /// Values of their shape functions in the point.
     shape: [f64; MAX_FACE_NODES],
     count: usize,
@@ -29,6 +30,7 @@ impl Point {
     pub fn at_node(node: u32, area: f64, share: f64) -> Point {
         let mut point = Point {
             nodes: [0; MAX_FACE_NODES],
+            beside: 0,
             shape: [0.0; MAX_FACE_NODES],
             count: 1,
             area,
@@ -45,6 +47,31 @@ impl Point {
         Point { radius, ..self }
     }
 
+    /// Lets a node know a face that it is on, by the nodes of the face: it keeps as many as there is room for.
+    pub fn add_face(&mut self, face: &[u32]) {
+        for &node in face {
+            let known = self.count + self.beside;
+            if known < MAX_FACE_NODES && !self.nodes[..known].contains(&node) {
+                self.nodes[known] = node;
+                self.beside += 1;
+            }
+        }
+    }
+
+    /// The mean place of the other nodes of its faces, m: the side of the point on which its surface lies. `None` of a node without a face
+    /// that it knows.
+    pub(crate) fn behind(&self, places: &Places) -> Option<[f64; 3]> {
+        let known = &self.nodes[..self.count + self.beside];
+        let others = if self.count == 1 { &known[1..] } else { known };
+        let mut sum = [0.0; 3];
+        for &node in others {
+            let x = places.of(node);
+            (0..3).for_each(|i| sum[i] += x[i]);
+        }
+        let count = others.len() as f64;
+        (!others.is_empty()).then(|| sum.map(|sum| sum / count))
+    }
+
     /// The place of the axis of a beam that is nearest to another one which it crosses. `area` in m².
     pub fn crossing(axis: &Face, area: f64) -> Point {
         Point {
@@ -57,7 +84,7 @@ impl Point {
 
     /// The point with its nodes in other numbers.
     pub(crate) fn renumbered(mut self, number: impl Fn(u32) -> u32) -> Point {
-        for node in &mut self.nodes[..self.count] {
+        for node in &mut self.nodes[..self.count + self.beside] {
             *node = number(*node);
         }
         self
@@ -120,6 +147,7 @@ impl Point {
         let nodes = face.corners();
         let mut point = Point {
             nodes: [0; MAX_FACE_NODES],
+            beside: 0,
             shape: [0.0; MAX_FACE_NODES],
             count: nodes.len(),
             area: 0.0,

@@ -26,7 +26,14 @@ impl Contact {
         nodes.sort_unstable();
         nodes.dedup();
         let points = nodes.iter().map(|&node| Point::at_node(node, 0.0, 0.0));
-        let points: Vec<Point> = points.collect();
+        let mut points: Vec<Point> = points.collect();
+        for face in primary {
+            for node in face.corners() {
+                let own = nodes.binary_search(node);
+                own.into_iter()
+                    .for_each(|k| points[k].add_face(face.corners()));
+            }
+        }
         let mut target = secondary.to_vec();
         Rim::mark(&mut target, |node| x[node as usize], |node| node);
         let sight = Sight::new((&points, primary), &target, x, Some(depth));

@@ -11,7 +11,7 @@
 use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
-pub(crate) use self::foot::{diagonal, faces_point, foot_on, is_beside_rim, spread};
+pub(crate) use self::foot::{Stand, diagonal, faces_point, foot_on, is_beside_rim, spread};
 use self::group::Group;
 use self::guess::Guesses;
 use self::kept::Kept;
@@ -155,18 +155,24 @@ impl Search {
         &mut self,
         places: &Places,
         faces: &'a [Face],
-        view: Option<View>,
-        x: &[f64; 3],
+        (point, view): (&Point, Option<View>),
     ) -> Option<(Projection, &'a Face)> {
+        let x = &point.place(places);
+        let stand = Stand {
+            x,
+            of: Some((point, places)),
+        };
         let slot = self.next;
         if let Some(held) = self.ways.get(slot).and_then(|way| way.held) {
             self.next += 1;
             return Some(foot_on(places, faces, held, x));
         }
         let found = self
-            .closest((places, faces), view, x, f64::INFINITY)
+            .closest((places, faces), view, stand, f64::INFINITY)
             .filter(|(foot, face)| {
-                faces_point(foot, face, view.is_none(), || diagonal(places, face))
+                faces_point((stand, foot), face, view.is_none(), || {
+                    diagonal(places, face)
+                })
             });
         if let (true, Some((foot, face)), Some(item)) = (self.watches, &found, self.kept[slot].face)
             && is_between(places, foot, face)
@@ -215,7 +221,7 @@ impl Search {
         &mut self,
         target: (&Places, &'a [Face]),
         view: Option<View>,
-        x: &[f64; 3],
+        stand: Stand,
         within: f64,
     ) -> Option<(Projection, &'a Face)> {
         let slot = self.next;
@@ -224,7 +230,8 @@ impl Search {
             self.kept.resize_with(slot + 1, Kept::default);
         }
         let question = Question {
-            x: *x,
+            x: *stand.x,
+            of: stand.of,
             view,
             within,
             guess: self.guesses.take(slot),

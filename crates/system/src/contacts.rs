@@ -337,11 +337,21 @@ fn nodes(
         }
     }
     let points = surface.nodes.iter().zip(areas).zip(radii);
+    let at = |((&node, area), radius): ((&u32, f64), f64)| {
+        Point::at_node(number[node as usize], area, 0.0).around(radius)
+    };
+    let mut points: Vec<Point> = points.map(at).collect();
+    for face in &surface.faces {
+        let own = renumbered(face, number);
+        for k in face
+            .corners()
+            .iter()
+            .filter_map(|&node| surface.index_of(node))
+        {
+            points[k].add_face(own.corners());
+        }
+    }
     points
-        .map(|((&node, area), radius)| {
-            Point::at_node(number[node as usize], area, 0.0).around(radius)
-        })
-        .collect()
 }
 
 /// The nodes of these cells that are not on the surface, in the order of the cells: the deletion of cells may lay them bare. They stand

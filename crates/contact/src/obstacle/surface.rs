@@ -7,7 +7,7 @@ use carom_mesh::{Bounds, BoxTree, Face, Mesh, Projection, Rim, Surface, project}
 
 use super::distance::Distance;
 use crate::passed::passed_face;
-use crate::search::faces_point;
+use crate::search::{Stand, faces_point};
 
 /// Rigid surface of faces: the material must stay on the side to which their normals point.
 ///
@@ -92,12 +92,15 @@ impl RigidSurface {
         let size = |face: &Face| {
             Bounds::of_face(face.kind, &places(&self.x, face)[..face.corners().len()]).diagonal()
         };
+        let stand = Stand { x, of: None };
         match found {
-            Some((foot, face)) if faces_point(&foot, face, true, || size(face)) => Distance {
-                gap: foot.gap,
-                normal: foot.normal,
-                hessian: self.hessian(&foot, face),
-            },
+            Some((foot, face)) if faces_point((stand, &foot), face, true, || size(face)) => {
+                Distance {
+                    gap: foot.gap,
+                    normal: foot.normal,
+                    hessian: self.hessian(&foot, face),
+                }
+            }
             _ => Distance {
                 gap: f64::INFINITY,
                 normal: [0.0; 3],

@@ -56,6 +56,7 @@ impl Contact {
             if inside(k) {
                 let question = Question {
                     x,
+                    of: Some((&self.points[k], places)),
                     view,
                     within: f64::INFINITY,
                     guess: None,

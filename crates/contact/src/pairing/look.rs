@@ -16,7 +16,7 @@ use crate::rest::{BLOCK, Rest};
 use crate::search::faces::{FaceTree, Question};
 use crate::search::group::Group;
 use crate::search::kept::Kept;
-use crate::search::{Way, diagonal, faces_point, foot_on, is_between};
+use crate::search::{Stand, Way, diagonal, faces_point, foot_on, is_between};
 use crate::{Contact, Places, Search, Target};
 
 impl Contact {
@@ -127,8 +127,11 @@ impl Contact {
         let k = number as usize;
         let (point, view, inside) = (&self.points[k], self.view(k), (near.inside)(k));
         let (x, limit) = (point.place(target.0), self.limit(k, reach.watched));
+        let of = Some((point, target.0));
+        let stand = Stand { x: &x, of };
         let question = Question {
             x,
+            of,
             view,
             within: match view.is_some() && !inside {
                 true => limit,
@@ -149,7 +152,9 @@ impl Contact {
         let found = tree.closest(target, &question, &mut group.kept[slot], &mut group.scratch);
         if let (true, Some((foot, face)), Some(item)) =
             (group.watches, &found, group.kept[slot].face)
-            && faces_point(foot, face, view.is_none(), || diagonal(target.0, face))
+            && faces_point((stand, foot), face, view.is_none(), || {
+                diagonal(target.0, face)
+            })
             && is_between(target.0, foot, face)
         {
             if group.ways.len() <= slot {
@@ -160,7 +165,9 @@ impl Contact {
         let is_near = |distance: f64| inside || distance <= limit;
         match (found, view) {
             (Some((foot, face)), _) if is_near(foot.distance) => {
-                let faces = faces_point(&foot, face, view.is_none(), || diagonal(target.0, face));
+                let faces = faces_point((stand, &foot), face, view.is_none(), || {
+                    diagonal(target.0, face)
+                });
                 let near = faces && foot.gap - point.radius + self.offset(k) <= reach.near;
                 let stencil = near.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
                 (stencil, 0.0)

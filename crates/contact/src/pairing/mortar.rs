@@ -31,7 +31,7 @@ use super::overlap::{Cell, Sample, cells};
 use super::share::{Quadrature, Share};
 use super::stencil::Stencil;
 use crate::mortar::{Basis, CORNERS, Mortar, linear};
-use crate::search::is_beside_rim;
+use crate::search::{Stand, is_beside_rim};
 use crate::{Contact, Obstacle, Places, Point, Search, Target};
 
 /// Part of its area that a multiplier must have opposite it to face anything.
@@ -193,7 +193,12 @@ impl<'a> Sweep<'a> {
         for cell in cells(element, &x[..element.nodes]) {
             let target = (self.places, faces);
             let within = FAR * radius(&cell) + self.radius() + contact.widest();
-            let Some((closest, _)) = search.closest(target, view, &cell.middle(), within) else {
+            let middle = cell.middle();
+            let stand = Stand {
+                x: &middle,
+                of: None,
+            };
+            let Some((closest, _)) = search.closest(target, view, stand, within) else {
                 continue;
             };
             let side = self.side(&cell, &closest);
@@ -231,7 +236,11 @@ impl<'a> Sweep<'a> {
                 let foot = project(face, x, &place);
                 let way = Vec3::from(foot.point) - Vec3::from(place);
                 let ahead = !both || outward.dot(&way) > 0.0;
-                let beside = is_beside_rim(&foot, face, || Bounds::of(x).diagonal());
+                let stand = Stand {
+                    x: &place,
+                    of: None,
+                };
+                let beside = is_beside_rim((stand, &foot), face, || Bounds::of(x).diagonal());
                 if ahead && !beside && sees(&foot) {
                     let stencil = match &mut first {
                         Some(stencil) => {

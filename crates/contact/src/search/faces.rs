@@ -4,7 +4,7 @@ use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, QUADS};
 
 use super::corners::Taken;
-use super::foot::{diagonal, faces_point, foot_on, hull};
+use super::foot::{Own, Stand, diagonal, faces_point, foot_on, hull};
 use super::kept::{Guess, Kept, Query, squared};
 use crate::sight::{Corners, View};
 use crate::{Places, Sight};
@@ -52,6 +52,8 @@ pub(crate) struct FaceTree {
 pub(crate) struct Question<'a> {
     /// Place, m.
     pub x: [f64; 3],
+    /// The point that is there.
+    pub of: Own<'a>,
     /// What is seen from there; all if none.
     pub view: Option<View<'a>>,
     /// Distance beyond which nothing is looked for, m.
@@ -183,6 +185,7 @@ impl FaceTree {
         scratch: &mut Scratch,
     ) -> Option<(Projection, &'a Face)> {
         let (x, view) = (&question.x, question.view);
+        let stand = Stand { x, of: question.of };
         // where the place was when the boxes were taken, but for what `moved` bounds
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
         let mut count = 0;
@@ -197,8 +200,8 @@ impl FaceTree {
             let foot = foot_on(places, faces, item, x).0;
             let seen = view.is_none_or(|view| {
                 view.shows(item, &foot, &self.normals)
-                    && faces_point(&foot, face, false, || diagonal(places, face))
-                    && !view.is_over_neighbour((item, &foot), x, (places, faces))
+                    && faces_point((stand, &foot), face, false, || diagonal(places, face))
+                    && !view.is_over_neighbour((item, &foot), stand, (places, faces))
             });
             if !seen {
                 return f64::INFINITY;

@@ -4,11 +4,55 @@ use carom_elements::Kind;
 use carom_mesh::{Bounds, Face, Projection, project};
 
 use super::kept::squared;
-use crate::Places;
+use crate::{Places, Point};
 
 /// Part of the size of a face within which two places are the same, and roundings of a coordinate, of which a place and a foot have some.
 const SAME: f64 = 1e-9;
 const ULPS: f64 = 16.0;
+
+/// Part of the size of a face by which a point may be beyond a rim over which its own surface reaches back: what bodies with flush sides spread
+/// by as they strike, at strains of some per cent.
+const OVERHANG: f64 = 0.05;
+
+/// A place that looks for a face, m, and the point that is there.
+#[derive(Clone, Copy)]
+pub(crate) struct Stand<'a> {
+    pub x: &'a [f64; 3],
+    pub of: Own<'a>,
+}
+
+/// A point with the places of its nodes; none where there is a place alone.
+pub(crate) type Own<'a> = Option<(&'a Point, &'a Places<'a>)>;
+
+impl Stand<'_> {
+    /// How far the place may be beyond a rim and is not beside the surface, m, if what is beside the way to it is that which its own surface
+    /// lies on: flush bodies spread, and their outermost nodes still stand for what is within both.
+    fn overhang(&self, foot: &Projection, size: f64) -> f64 {
+        let Some(behind) = self.of.and_then(|(point, places)| point.behind(places)) else {
+            return 0.0;
+        };
+        let back = (0..3).map(|i| {
+            let sideways = self.x[i] - foot.point[i] - foot.gap * foot.normal[i];
+            sideways * (behind[i] - foot.point[i])
+        });
+        match back.sum::<f64>() < 0.0 {
+            true => OVERHANG * size,
+            false => 0.0,
+        }
+    }
+
+    /// The same of the distance before a face across a ridge, in which `foot` is the foot.
+    pub(crate) fn overhang_across(&self, foot: &Projection, size: f64) -> f64 {
+        let Some(behind) = self.of.and_then(|(point, places)| point.behind(places)) else {
+            return 0.0;
+        };
+        let gap = (0..3).map(|i| (behind[i] - foot.point[i]) * foot.normal[i]);
+        match gap.sum::<f64>() < 0.0 {
+            true => OVERHANG * size,
+            false => 0.0,
+        }
+    }
+}
 
 /// The closest point of one of the faces.
 pub(crate) fn foot_on<'a>(
@@ -44,9 +88,10 @@ pub(crate) fn hull(places: &Places, face: &Face) -> Bounds {
 ///
 /// On an edge where the surface goes on: if the way to the point runs sideways by no more than it runs along the normal, or if the closest point
 /// is that of `all` faces and the point is behind them, in a fold. At the rim of the surface: if it does not run sideways, since a point beyond
-/// the rim is beside the surface, above its plane or below it; on a sharp ridge so is one above it. `size`: of the face, m.
+/// the rim is beside the surface, above its plane or below it; on a sharp ridge so is one above it. A point whose own surface reaches back over
+/// the rim may be beyond it by [`OVERHANG`]. `size`: of the face, m.
 pub(crate) fn faces_point(
-    foot: &Projection,
+    (stand, foot): (Stand, &Projection),
     face: &Face,
     all: bool,
     size: impl FnOnce() -> f64,
@@ -63,12 +108,21 @@ pub(crate) fn faces_point(
         true => f64::INFINITY,
         false => foot.gap.abs(),
     };
-    sideways <= along || sideways <= rounding(foot, size())
+    if sideways <= along {
+        return true;
+    }
+    let size = size();
+    sideways <= rounding(foot, size) || ends && sideways <= stand.overhang(foot, size)
 }
 
 /// Whether a point is below the plane of a face and beyond the rim of the surface there.
-pub(crate) fn is_beside_rim(foot: &Projection, face: &Face, size: impl FnOnce() -> f64) -> bool {
-    foot.gap < 0.0 && face.rim.holds(face.kind, &foot.xi) && !faces_point(foot, face, true, size)
+pub(crate) fn is_beside_rim(
+    (stand, foot): (Stand, &Projection),
+    face: &Face,
+    size: impl FnOnce() -> f64,
+) -> bool {
+    let beyond = foot.gap < 0.0 && face.rim.holds(face.kind, &foot.xi);
+    beyond && !faces_point((stand, foot), face, true, size)
 }
 
 /// How far the way from a foot to its point runs beside the normal, m.

@@ -5,7 +5,7 @@ use carom_mesh::{Face, Projection, is_on};
 use super::across::Across;
 use super::{Sight, View};
 use crate::Places;
-use crate::search::{diagonal, foot_on, is_beside_rim};
+use crate::search::{Stand, diagonal, foot_on, is_beside_rim};
 
 impl Sight {
     /// The views with other faces of the target, whose neighbours are others.
@@ -18,12 +18,12 @@ impl Sight {
 }
 
 impl View<'_> {
-    /// Whether a point at `x` (m) is behind the plane of a face of the target and beyond an edge of it, but beside the body there: before
+    /// Whether a point is behind the plane of a face of the target and beyond an edge of it, but beside the body there: before
     /// the face across that edge, or beyond the rim of the surface that this and the faces beyond it reach.
     pub(crate) fn is_over_neighbour(
         &self,
         (item, foot): (u32, &Projection),
-        x: &[f64; 3],
+        stand: Stand,
         of: (&Places, &[Face]),
     ) -> bool {
         if foot.inside || foot.gap >= 0.0 {
@@ -34,11 +34,11 @@ impl View<'_> {
         let beyond = |edge: usize| is_on(kind, edge, &foot.xi);
         let mut others = self.sight.across.of(item).filter(|(edge, _)| beyond(*edge));
         others.any(|(_, other)| {
-            let (across, face) = foot_on(places, faces, other, x);
-            across.gap > 0.0
-                || is_beside_rim(&across, face, || diagonal(places, face))
+            let (across, face) = foot_on(places, faces, other, stand.x);
+            across.gap > 0.0 && across.gap > stand.overhang_across(&across, diagonal(places, face))
+                || is_beside_rim((stand, &across), face, || diagonal(places, face))
                 || across.distance < foot.distance
-                    && self.is_over_neighbour((other, &across), x, of)
+                    && self.is_over_neighbour((other, &across), stand, of)
         })
     }
 

@@ -152,6 +152,29 @@ fn a_point_that_sees_the_top_of_a_block_alone_is_beside_it_where_it_is_before_it
     assert_eq!(before, f64::INFINITY);
 }
 
+/// The gap of the end of a line 1 cm below the strip from -1 to 1, which is `beside` its rim (m); the other end is `along` from there.
+fn end_of_line(beside: f64, along: f64) -> f64 {
+    let mut x = vec![[-1.0, 0.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0]];
+    x.push([1.0 + beside + along, -0.01, 0.0]);
+    x.push([1.0 + beside, -0.01, 0.0]);
+    let faces = vec![face(Kind::Bar2, &[1, 0]), face(Kind::Bar2, &[2, 1])];
+    let mut contact = over(faces, &x);
+    contact.points[0].add_face(&[3, 4]);
+    gap(&contact, 2, &x)
+}
+
+#[test]
+fn flush_sides_that_spread_stay_in_contact_and_a_body_beside_has_none() {
+    for beside in [1e-6, 1e-3, 0.02, 0.04] {
+        // its own surface is over the other one: a twentieth of a face is what bodies spread by
+        let found = end_of_line(beside, -0.5);
+        assert!((found + 0.01).abs() < 1e-15, "{beside} {found}");
+        // its own surface is beyond the rim
+        assert_eq!(end_of_line(beside, 0.5), f64::INFINITY, "{beside}");
+    }
+    assert_eq!(end_of_line(0.06, -0.5), f64::INFINITY);
+}
+
 /// A place over a strip of four lines along x, from 0 to 1, seen by a node whose own faces look down.
 fn seen_over_strip(point: [f64; 2]) -> f64 {
     let mut x: Vec<[f64; 3]> = (0..5).map(|i| [0.25 * f64::from(i), 0.0, 0.0]).collect();

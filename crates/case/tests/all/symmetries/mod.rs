@@ -24,8 +24,8 @@ const MODELS: u64 = 20;
 /// What is compared of a run.
 struct Answer {
     grade: Grade,
-    /// By name of the line.
-    grades: Vec<(String, Grade)>,
+    /// Grade and value by name of the line.
+    grades: Vec<(String, Grade, f64)>,
     /// Impulse and largest force of each contact.
     forces: Vec<[f64; 2]>,
 }
@@ -44,9 +44,11 @@ fn answer(text: &str) -> Answer {
     }
 }
 
-fn grades(summary: &Summary) -> Vec<(String, Grade)> {
+fn grades(summary: &Summary) -> Vec<(String, Grade, f64)> {
     let lines = summary.verdict.lines.iter();
-    lines.map(|line| (line.name.clone(), line.grade)).collect()
+    lines
+        .map(|line| (line.name.clone(), line.grade, line.value))
+        .collect()
 }
 
 /// Compares the models of the `number`-th change with their changed ones; with the change: the size of places, m.
@@ -74,10 +76,10 @@ fn hold(number: u64, change: impl Fn(&Model) -> (Change, f64)) {
                 }
             }
         }
-        for (name, grade) in &plain.grades {
-            let other = changed.grades.iter().find(|(other, _)| other == name);
-            if other.is_none_or(|(_, other)| other != grade) {
-                broken.push(format!("{seed}: {name} {grade:?} {other:?}"));
+        for (name, grade, value) in &plain.grades {
+            let other = changed.grades.iter().find(|(other, ..)| other == name);
+            if other.is_none_or(|(_, other, _)| other != grade) {
+                broken.push(format!("{seed}: {name} {grade:?} {value:e} {other:?}"));
             }
         }
         if plain.grade != changed.grade {
@@ -163,5 +165,33 @@ fn a_body_that_touches_nothing_changes_no_answer() {
             // it moves by 60 m/s and makes the model larger
             (change, 100.0)
         });
+    }
+}
+
+#[test]
+fn the_angular_momentum_is_about_a_point_of_the_model_wherever_it_lies() {
+    for distance in [0.0, 1e3, 1e6] {
+        let corner = [distance, -0.3 * distance];
+        let (summary, _) = result(&format!(
+            r#"
+carom = 1
+mesh.generate.b.rectangle = {{ origin = {corner:?}, size = [0.2, 0.1], elements = [2, 1] }}
+material.m = {{ density = 1000.0, neo-hooke = {{ young = 1e8, poisson = 0.3 }} }}
+body.b = {{ region = "b", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [3.0, 1.0] }}
+time = {{ end = 1e-3, step = 1e-4, scheme.theta = {{}} }}
+"#
+        ));
+        let angular = summary.momentum.angular.unwrap();
+        for i in 0..2 {
+            // the end of the block nearest to the origin: its first corner, and its last one where the block lies below the axis
+            let far = if i == 1 && distance > 0.0 { 0.1 } else { 0.0 };
+            assert!((angular.about[i] - corner[i] - far).abs() <= 4e-10);
+        }
+        // m (x v_y - y v_x) of the middle of 20 kg; places are known to 1e-16 of the distance
+        let [x, y] = [0, 1].map(|i| corner[i] + [0.1, 0.05][i] - angular.about[i]);
+        let exact = 20.0 * (x * 1.0 - y * 3.0);
+        let bound = 1e-12 + 20.0 * 3.0 * 4e-16 * distance;
+        assert!((angular.initial[2] - exact).abs() < bound, "{angular:?}");
+        assert!(angular.relative_residual < 1e-9, "{angular:?}");
     }
 }
