@@ -11,7 +11,7 @@
 use carom_mesh::{Face, Projection, QUADS};
 
 use self::faces::{FaceTree, Question, Scratch};
-pub(crate) use self::foot::{Stand, diagonal, faces_point, foot_on, is_beside_rim, spread};
+pub(crate) use self::foot::{Own, Stand, diagonal, faces_point, foot_on, is_beside_rim, spread};
 use self::group::Group;
 use self::guess::Guesses;
 use self::kept::Kept;
@@ -160,7 +160,7 @@ impl Search {
         let x = &point.place(places);
         let stand = Stand {
             x,
-            of: Some((point, places)),
+            of: Some(&|| point.behind(places)),
         };
         let slot = self.next;
         if let Some(held) = self.ways.get(slot).and_then(|way| way.held) {

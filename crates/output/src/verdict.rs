@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::form::Form;
 
+/// Part of a bound that rounding may leave of a number that is as large.
+const ROUNDING: f64 = 1e-8;
+
 /// How far something can be relied on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -49,11 +52,11 @@ impl Bounds {
         }
     }
 
-    /// The grade of a number; what is not a number is bad.
+    /// The grade of a number; what is not a number is bad. A number that is at a bound but for [`ROUNDING`] is within it: it would be graded by
+    /// the last bits of a run.
     pub fn grade(self, value: f64) -> Grade {
-        let [look, bad] = self
-            .pair()
-            .map(|bound| bound.is_some_and(|bound| value.abs() > bound));
+        let above = |bound: f64| value.abs() > bound * (1.0 + ROUNDING);
+        let [look, bad] = self.pair().map(|bound| bound.is_some_and(above));
         match (look, bad || value.is_nan()) {
             (_, true) => Grade::Bad,
             (true, false) => Grade::Look,

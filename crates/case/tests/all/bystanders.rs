@@ -22,7 +22,8 @@ const BOUND: f64 = 1e-6;
 
 /// The keys that add the body to a case in a mesh of this size; none where each body has to be in a zone, or where each has to be of a kind.
 fn far(text: &str, mesh: &Mesh) -> Option<Vec<String>> {
-    if text.contains("[zone") || text.contains("zone.") {
+    // an exact solution is of its bodies alone
+    if text.contains("[zone") || text.contains("zone.") || text.contains("[reference") {
         return None;
     }
     let size = mesh.size();

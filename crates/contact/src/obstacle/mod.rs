@@ -22,6 +22,9 @@ pub use surface::RigidSurface;
 
 use motion::Pose;
 
+use crate::search::{Own, Stand};
+use crate::{Places, Point};
+
 /// Shape of an obstacle at time 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
@@ -131,14 +134,28 @@ impl From<RigidSurface> for Obstacle {
 impl Placed<'_> {
     /// Gap, normal and curvature at a place x in m, all at this time: the derivatives are those by x.
     pub fn distance(&self, x: &[f64; 3]) -> Distance {
+        self.distance_from(x, None)
+    }
+
+    /// The same of a point, which may be beyond the rim of a surface over which its own reaches back.
+    pub(crate) fn distance_of(&self, point: &Point, places: &Places) -> Distance {
+        let behind = || point.behind(places).map(|x| self.back(&x));
+        self.distance_from(&point.place(places), Some(&behind))
+    }
+
+    fn distance_from(&self, x: &[f64; 3], of: Own) -> Distance {
+        let of_shape = |x: &[f64; 3]| match self.shape {
+            Shape::Surface(surface) => surface.distance_of(&Stand { x, of }),
+            shape => shape.distance(x),
+        };
         let Some(pose) = &self.pose else {
-            return self.shape.distance(x);
+            return of_shape(x);
         };
         let Distance {
             gap,
             normal,
             hessian,
-        } = self.shape.distance(&pose.back(x));
+        } = of_shape(&pose.back(x));
         Distance {
             gap,
             normal: pose.turned(&normal),

@@ -80,6 +80,11 @@ impl RigidSurface {
 
     /// Gap over the closest face (the first of equals) of a place x in m; a place beyond the rim faces nothing.
     pub fn distance(&self, x: &[f64; 3]) -> Distance {
+        self.distance_of(&Stand { x, of: None })
+    }
+
+    pub(crate) fn distance_of(&self, stand: &Stand) -> Distance {
+        let x = stand.x;
         let foot = |item: u32| {
             let face = &self.faces[item as usize];
             let places = places(&self.x, face);
@@ -92,9 +97,8 @@ impl RigidSurface {
         let size = |face: &Face| {
             Bounds::of_face(face.kind, &places(&self.x, face)[..face.corners().len()]).diagonal()
         };
-        let stand = Stand { x, of: None };
         match found {
-            Some((foot, face)) if faces_point((stand, &foot), face, true, || size(face)) => {
+            Some((foot, face)) if faces_point((*stand, &foot), face, true, || size(face)) => {
                 Distance {
                     gap: foot.gap,
                     normal: foot.normal,

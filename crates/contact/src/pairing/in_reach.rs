@@ -56,7 +56,7 @@ impl Contact {
             if inside(k) {
                 let question = Question {
                     x,
-                    of: Some((&self.points[k], places)),
+                    of: Some(&|| self.points[k].behind(places)),
                     view,
                     within: f64::INFINITY,
                     guess: None,

@@ -86,8 +86,7 @@ impl Contact {
         let point = &self.points[number as usize];
         let (stencil, clearance) = match &self.target {
             Target::Rigid(obstacle) => {
-                let x = point.place(places);
-                let distance = obstacle.at(places.time).distance(&x);
+                let distance = obstacle.at(places.time).distance_of(point, places);
                 let gap = distance.gap + self.offset(number as usize) - point.radius;
                 let stencil = match gap <= reach.near {
                     true => Stencil::on_obstacle(places, point, obstacle, span),
@@ -127,11 +126,14 @@ impl Contact {
         let k = number as usize;
         let (point, view, inside) = (&self.points[k], self.view(k), (near.inside)(k));
         let (x, limit) = (point.place(target.0), self.limit(k, reach.watched));
-        let of = Some((point, target.0));
-        let stand = Stand { x: &x, of };
+        let behind = || point.behind(target.0);
+        let stand = Stand {
+            x: &x,
+            of: Some(&behind),
+        };
         let question = Question {
             x,
-            of,
+            of: stand.of,
             view,
             within: match view.is_some() && !inside {
                 true => limit,

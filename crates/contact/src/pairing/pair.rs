@@ -31,7 +31,7 @@ impl Contact {
                 let placed = obstacle.at(places.time);
                 for (k, point) in self.points.iter().enumerate() {
                     let x = point.place(places);
-                    let Distance { gap, normal, .. } = placed.distance(&x);
+                    let Distance { gap, normal, .. } = placed.distance_of(point, places);
                     rows.push(gap + offset(k), normal);
                     rows.set_rate(placed.gap_rate(&x, &normal));
                     add_point(places, point, &normal, rows);

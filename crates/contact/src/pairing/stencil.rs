@@ -56,7 +56,7 @@ impl Stencil {
         span: [f64; 2],
     ) -> Option<Stencil> {
         let (x, placed) = (point.place(places), obstacle.at(places.time));
-        let found = placed.distance(&x);
+        let found = placed.distance_of(point, places);
         if found.gap == f64::INFINITY {
             return None;
         }

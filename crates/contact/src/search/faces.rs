@@ -52,7 +52,7 @@ pub(crate) struct FaceTree {
 pub(crate) struct Question<'a> {
     /// Place, m.
     pub x: [f64; 3],
-    /// The point that is there.
+    /// The surface of the point that is there.
     pub of: Own<'a>,
     /// What is seen from there; all if none.
     pub view: Option<View<'a>>,

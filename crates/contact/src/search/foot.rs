@@ -4,7 +4,7 @@ use carom_elements::Kind;
 use carom_mesh::{Bounds, Face, Projection, project};
 
 use super::kept::squared;
-use crate::{Places, Point};
+use crate::Places;
 
 /// Part of the size of a face within which two places are the same, and roundings of a coordinate, of which a place and a foot have some.
 const SAME: f64 = 1e-9;
@@ -14,21 +14,21 @@ const ULPS: f64 = 16.0;
 /// by as they strike, at strains of some per cent.
 const OVERHANG: f64 = 0.05;
 
-/// A place that looks for a face, m, and the point that is there.
+/// A place that looks for a face, m, and the surface of the point that is there.
 #[derive(Clone, Copy)]
 pub(crate) struct Stand<'a> {
     pub x: &'a [f64; 3],
     pub of: Own<'a>,
 }
 
-/// A point with the places of its nodes; none where there is a place alone.
-pub(crate) type Own<'a> = Option<(&'a Point, &'a Places<'a>)>;
+/// Where the surface of a point is, as [`Point::behind`](crate::Point) says; none where there is a place alone.
+pub(crate) type Own<'a> = Option<&'a dyn Fn() -> Option<[f64; 3]>>;
 
 impl Stand<'_> {
     /// How far the place may be beyond a rim and is not beside the surface, m, if what is beside the way to it is that which its own surface
     /// lies on: flush bodies spread, and their outermost nodes still stand for what is within both.
     fn overhang(&self, foot: &Projection, size: f64) -> f64 {
-        let Some(behind) = self.of.and_then(|(point, places)| point.behind(places)) else {
+        let Some(behind) = self.of.and_then(|behind| behind()) else {
             return 0.0;
         };
         let back = (0..3).map(|i| {
@@ -43,7 +43,7 @@ impl Stand<'_> {
 
     /// The same of the distance before a face across a ridge, in which `foot` is the foot.
     pub(crate) fn overhang_across(&self, foot: &Projection, size: f64) -> f64 {
-        let Some(behind) = self.of.and_then(|(point, places)| point.behind(places)) else {
+        let Some(behind) = self.of.and_then(|behind| behind()) else {
             return 0.0;
         };
         let gap = (0..3).map(|i| (behind[i] - foot.point[i]) * foot.normal[i]);

@@ -287,7 +287,7 @@ fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
         largest_residual: largest,
         largest: last.largest_energy(),
         largest_hourglass: (ledger.largest_hourglass > 0.0).then_some(ledger.largest_hourglass),
-        relative_residual: relative(largest, last.largest_energy()),
+        relative_residual: relative(largest, last.balanced_energy()),
         identity,
     }
 }

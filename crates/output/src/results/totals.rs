@@ -102,9 +102,15 @@ impl Last {
     /// the ledger.
     pub(crate) fn largest_energy(&self) -> f64 {
         match self.assemblies.largest {
-            own if own > 0.0 => own.max(ROUNDING * self.ledger.largest_energy),
+            own if own > 0.0 => own,
             _ => self.ledger.largest_energy,
         }
+    }
+
+    /// What the residual of the energy is relative to, J: the largest energy, or what rounding leaves of that in the frame of the model.
+    pub(crate) fn balanced_energy(&self) -> f64 {
+        let own = self.largest_energy();
+        own.max(ROUNDING * self.ledger.largest_energy)
     }
 
     /// Energy at the start and the largest work of loads, supports and obstacles, J, in the same frames.

@@ -17,6 +17,8 @@ pub struct Change {
     pub turned: bool,
     /// x reversed.
     pub mirrored: bool,
+    /// Each gap more by this, m.
+    pub raised: f64,
     /// Distance of the origin, m.
     pub distance: f64,
     /// What is far away besides.
@@ -31,6 +33,7 @@ impl Default for Change {
             scale: 1.0,
             turned: false,
             mirrored: false,
+            raised: 0.0,
             distance: 0.0,
             bystander: None,
         }
@@ -133,10 +136,19 @@ impl Model {
         let mut y = 0.0;
         for k in 0..count {
             y += 2e-4 + 1e-4 * of(5) as f64;
-            let size = [0.1 + 0.01 * of(10) as f64, 0.05 + 0.01 * of(5) as f64];
+            // no wider than what is below: a contact whose points are all beyond the rim cannot act
+            let below: Option<&Block> = blocks.last();
+            let inset = below.map_or(0.013, |_| 0.01) * of(3) as f64;
+            let [left, width] = below.map_or([0.0, 0.25 + 0.01 * of(10) as f64], |below| {
+                [below.origin[0], below.size[0]]
+            });
+            let size = [
+                width - inset - 0.01 * of(3) as f64,
+                0.05 + 0.01 * of(5) as f64,
+            ];
             let fall = SPEED + of(4) as f64;
             blocks.push(Block {
-                origin: [0.013 * of(5) as f64, y],
+                origin: [left + inset, y],
                 size,
                 elements: [1 + of(3), 1 + of(2)],
                 velocity: [0.0, if k == 0 && !on_plane { 0.0 } else { -fall }],
@@ -185,7 +197,9 @@ impl Model {
         let mut meshes: Vec<String> = Vec::new();
         let mut tables: Vec<String> = Vec::new();
         for (k, block) in self.blocks.iter().enumerate() {
-            meshes.push(mesh(&format!("b{k}"), block, change));
+            let mut raised = block.clone();
+            raised.origin[1] += change.raised * (k + 1) as f64;
+            meshes.push(mesh(&format!("b{k}"), &raised, change));
             tables.push(self.body(&format!("b{k}"), block, change));
         }
         self.contacts(&mut tables, change);

@@ -90,7 +90,7 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
     }
     let tolerated = relative(
         evidence.last.ledger.tolerated.energy,
-        evidence.last.largest_energy(),
+        evidence.last.balanced_energy(),
     );
     Finding::Line(Line::new(
         "energy-residual",

@@ -48,7 +48,8 @@ impl Evidence<'_> {
         if energies.len() < 2 || self.system.schemes.len() > 1 || !plain {
             return (whole, String::new());
         }
-        let none = NOTHING * self.last.ledger.largest_energy;
+        let largest = energies.iter().map(|own| own.largest);
+        let none = NOTHING * largest.fold(0.0, f64::max);
         let moved = |own: &&AssemblyEnergy| own.largest > none;
         let parts = energies.iter().enumerate();
         let parts = parts.filter(|(_, own)| moved(own));
