@@ -238,6 +238,12 @@ impl Buffer {
         behind[..count].fill(0.0);
     }
 
+    /// Takes a repeated vector off `n` entries; what is behind them stays zero.
+    pub(crate) fn take_off(&mut self, n: usize, w: &[f64; LANES]) {
+        let entries = self.0[RIM..RIM + n].iter_mut();
+        entries.zip(w.iter().cycle()).for_each(|(x, w)| *x -= w);
+    }
+
     /// Takes `dim` components of the vectors of some nodes.
     #[inline(always)]
     pub(crate) fn fill(&mut self, dim: usize, vectors: &[[f64; 3]]) {

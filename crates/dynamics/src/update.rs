@@ -340,16 +340,14 @@ impl Update<'_> {
         buffers.end(n);
         buffers.mass.spread(dim, within.mass);
         buffers.place.fill(dim, within.x);
+        if self.system.about != [0.0; 3] {
+            buffers.place.take_off(n, &pattern(dim, &self.system.about));
+        }
         let w = pattern(dim, &self.reference[block.part]);
-        let about = pattern(dim, &self.system.about);
         let moves = self.moves && !self.system.undeformed[block.part];
         let [ahead, v1, a1] = out;
         let out = [ahead, v1, &mut *a1];
-        self.move_on::<LOADED, DAMPED, TOUCHED>(
-            (within, [&w, &about], moves),
-            (buffers, sums),
-            out,
-        );
+        self.move_on::<LOADED, DAMPED, TOUCHED>((within, &w, moves), (buffers, sums), out);
         self.resultants::<LOADED, DAMPED, TOUCHED>(n, buffers, sums);
         if block.held {
             self.reactions::<LOADED, DAMPED, TOUCHED>((within, moves), (buffers, sums), a1);
@@ -360,7 +358,7 @@ impl Update<'_> {
     #[inline(always)]
     fn move_on<const LOADED: bool, const DAMPED: bool, const TOUCHED: bool>(
         &self,
-        (of, [w, about], moves): (&Within, [&[f64; blocks::LANES]; 2], bool),
+        (of, w, moves): (&Within, &[f64; blocks::LANES], bool),
         (buffers, sums): (&mut Buffers, &mut Sums),
         [ahead, v1, a1]: End,
     ) {
@@ -417,7 +415,7 @@ impl Update<'_> {
                 x[k] = if fixed[k] { 0.0 } else { free };
                 speed[k] = self.velocity.v * v[k] + self.velocity.a * a[k] + self.velocity.x * x[k];
                 far[k] = self.ahead.u * u[k] + self.ahead.v * speed[k] + self.ahead.a * x[k];
-                end[k] = place[k] - about[k] + moved * u[k];
+                end[k] = place[k] + moved * u[k];
                 middle[k] = end[k] - moved * (0.5 * du);
                 momentum[k] = m[k] * speed[k];
                 relative[k] = speed[k] - w[k];

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
-use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction};
+use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
 use carom_contact::{Initial, Integration, Law, Obstacle, Parts, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
@@ -12,7 +12,6 @@ use carom_schemes::Scheme;
 use crate::adaptive::Adaptive;
 use crate::modal::ModalDamping;
 use crate::nonlinear::Nonlinear;
-use crate::sliding::is_finite;
 
 /// Everything from which a system is built; names are those of the case file.
 #[derive(Clone, Debug)]
@@ -417,6 +416,12 @@ impl Model {
             || self.mixes_schemes()
             || self.contacts.iter().any(needs_newton)
     }
+}
+
+/// Whether a body is rigid, at finite strain, or has finite rotations.
+pub(crate) fn is_finite(body: &ModelBody) -> bool {
+    let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
+    body.rigid.is_some() || body.spec.material.finite().is_some() || turns
 }
 
 pub(crate) fn damped(body: &ModelBody) -> bool {

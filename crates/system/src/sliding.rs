@@ -2,10 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use carom_bodies::Rotations;
-
 use crate::contacts::{bodies_of, owners};
-use crate::model::{Model, ModelBody, ModelContact, damped, needs_newton};
+use crate::model::{Model, ModelContact, damped, is_finite, needs_newton};
 use crate::nonlinear::Damping;
 
 impl Model {
@@ -62,10 +60,4 @@ impl Model {
         nodes.extend(cells.flat_map(|&cell| self.mesh.element_nodes(cell)));
         nodes
     }
-}
-
-/// Whether a body is rigid, at finite strain, or has finite rotations.
-pub(crate) fn is_finite(body: &ModelBody) -> bool {
-    let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
-    body.rigid.is_some() || body.spec.material.finite().is_some() || turns
 }

@@ -45,7 +45,7 @@ pub const THIN: &[Small] = &[
 ];
 
 /// Plane and axisymmetric bodies.
-pub const PLANE: &[Small] = &[
+const PLANE: &[Small] = &[
     ("conveyor/case.toml", &[]),
     ("crushed-tube/case.toml", &["mesh.file=\"tube-coarse.msh\""]),
     ("oblique-bar/case.toml", &["mesh.file=\"bar-coarse.msh\""]),
@@ -80,7 +80,7 @@ pub const STATIC: &[Small] = &[
 ];
 
 /// Solids.
-pub const SOLID: &[Small] = &[
+const SOLID: &[Small] = &[
     ("bird-on-plate/case.toml", &[]),
     ("block-drop/case.toml", &[]),
     (
@@ -96,7 +96,7 @@ pub const SOLID: &[Small] = &[
 ];
 
 /// Solids in zones, and beside beams, shells and masses.
-pub const MIXED: &[Small] = &[
+const MIXED: &[Small] = &[
     ("assembly-row/case-5.toml", &[]),
     ("beam-and-solid/case-solid.toml", &[]),
     ("beam-and-solid/case.toml", &[]),
