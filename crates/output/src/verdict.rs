@@ -52,7 +52,7 @@ impl Bounds {
         }
     }
 
-    /// The grade of a number; what is not a number is bad. A number that is at a bound but for [`ROUNDING`] is within it: it would be graded by
+    /// The grade of a number; what is not a number is bad. A number that is at a bound but for rounding (1e-8) is within it: it would be graded by
     /// the last bits of a run.
     pub fn grade(self, value: f64) -> Grade {
         let above = |bound: f64| value.abs() > bound * (1.0 + ROUNDING);
