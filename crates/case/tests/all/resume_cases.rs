@@ -45,7 +45,7 @@ pub const THIN: &[Small] = &[
 ];
 
 /// Plane and axisymmetric bodies.
-const PLANE: &[Small] = &[
+pub const PLANE: &[Small] = &[
     ("conveyor/case.toml", &[]),
     ("crushed-tube/case.toml", &["mesh.file=\"tube-coarse.msh\""]),
     ("oblique-bar/case.toml", &["mesh.file=\"bar-coarse.msh\""]),
@@ -80,7 +80,7 @@ pub const STATIC: &[Small] = &[
 ];
 
 /// Solids.
-const SOLID: &[Small] = &[
+pub const SOLID: &[Small] = &[
     ("bird-on-plate/case.toml", &[]),
     ("block-drop/case.toml", &[]),
     (

@@ -271,11 +271,19 @@ impl Driver {
 
     /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
     pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
+        let contacts = 0..self.system.contacts.len();
+        let worst = contacts.filter_map(|contact| self.worst_point_of(contact));
+        worst.reduce(|one, other| if other.1 > one.1 { other } else { one })
+    }
+
+    /// The same of a contact. Its forces are compared with the largest of its own.
+    fn worst_point_of(&self, contact: usize) -> Option<(usize, f64)> {
         let tolerance = self.gap_tolerance();
-        let forces = self.next.interface.force.iter();
+        let points = self.system.points_of(contact);
+        let forces = self.next.interface.force[points.clone()].iter();
         let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
         let mut worst: Option<(usize, f64)> = None;
-        for point in 0..self.system.points() {
+        for point in points {
             if self.told(point) == Some(false) {
                 continue;
             }

@@ -220,6 +220,8 @@ pub struct Driver {
     reactions: Vec<Resultant>,
     vectors: Vectors,
     works: Works,
+    /// Sizes of the forces of each assembly.
+    squares: Vec<residual::Squares>,
     /// Energies of the iteration.
     stored: Stored,
     /// Forces of links in the step, N; empty without links.

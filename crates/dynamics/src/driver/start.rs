@@ -148,6 +148,7 @@ impl Driver {
                 ..Vectors::default()
             },
             works: Works::default(),
+            squares: Vec::new(),
             rows_stand: false,
             next: state_without_motion(&system),
             state: state_without_motion(&system),
@@ -323,6 +324,7 @@ impl Driver {
             }
         };
         self.state.assemblies = AssemblyEnergies::start(system, part);
+        self.state.records.small.begin_dynamics();
     }
 
     /// Keeps what direct steps need of the start: loads that vary, and forces beside the internal ones.
