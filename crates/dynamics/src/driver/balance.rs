@@ -165,6 +165,7 @@ impl Driver {
                 interface.opening[point] = opening;
             }
         }
+        self.note_landings();
     }
 
     /// Renews the memory of the laws at the points that carry a force at the end of the step.

@@ -20,6 +20,8 @@ mod attempt;
 mod balance;
 mod candidates;
 mod carried;
+mod closing;
+mod closings;
 mod compressed;
 mod contacts;
 mod deletion;
@@ -59,6 +61,8 @@ mod pieces;
 mod predictor;
 mod projection;
 mod ranked;
+mod rebound;
+mod rebounding;
 pub(crate) mod record;
 mod refine;
 mod refined;
@@ -106,6 +110,7 @@ use crate::system::{LinkRow, Maps, System};
 use crate::watch::Watch;
 use active::Active;
 use carried::Carried;
+use closings::Closings;
 use effective::Effective;
 use far::Far;
 use floating::Floating;
@@ -116,6 +121,7 @@ use mixing::Mixing;
 use paired::Manner;
 use passage::Passage;
 pub use ranked::RankShare;
+use rebound::Rebound;
 use refined::Refined;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
@@ -182,6 +188,8 @@ pub struct Driver {
     active: Active,
     passage: Passage,
     far: Far,
+    closings: Closings,
+    rebound: Rebound,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
@@ -334,7 +342,7 @@ impl Driver {
         let law = self.law(&self.system.contacts[number]);
         match law.get().level() {
             _ if self.between() => 0.5 * self.dt,
-            Level::Rate => law.get().capture() * self.dt,
+            Level::Rate => self.captured(number) * self.dt,
             Level::Gap => self.dt,
             Level::GapAndRate => self.map_of(number).instant(self.dt),
         }

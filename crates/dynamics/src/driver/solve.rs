@@ -157,11 +157,13 @@ impl Driver {
         self.vectors.ahead.clear();
         self.search.iter_mut().for_each(Search::begin_step);
         self.begin_far();
+        self.forget_closings();
         self.pair(true);
         if (0..self.system.contacts.len()).any(|k| self.looks_ahead(k)) {
             self.look_ahead()?;
             self.pair(true);
         }
+        self.find_closings();
         Ok(())
     }
 

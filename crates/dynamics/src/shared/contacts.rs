@@ -13,7 +13,7 @@ use crate::system::System;
 
 /// Numbers of a point that the first rank is given where somebody looks at points, and where the state is to be whole.
 const SEEN: usize = 5;
-pub(super) const WHOLE: usize = 12;
+pub(super) const WHOLE: usize = 13;
 
 /// The points of contacts that the first rank does not have: by rank on the first one, and on another its own.
 #[derive(Debug, Default)]
@@ -294,6 +294,7 @@ pub(super) fn of_point(
         watched,
         flight,
         crush,
+        landed,
     } = &mut state.interface;
     let mut slid = friction.get(point).copied().unwrap_or_default();
     let mut number = number_of(status[point]);
@@ -316,6 +317,7 @@ pub(super) fn of_point(
         &mut opening[point],
         &mut flight[point],
         &mut crush[point],
+        &mut landed[point],
         &mut state.records.opened[point],
         &mut is_watched,
     ];
