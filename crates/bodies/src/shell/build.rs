@@ -27,6 +27,11 @@ struct Corner {
     normal: Vec3,
 }
 
+/// Whether the stiffness against hourglass modes is that of full integration, of a material that does not flow.
+fn sees_all(formulation: Formulation, flows: bool) -> bool {
+    matches!(formulation, Formulation::Reduced { hourglass } if hourglass >= 1.0) && !flows
+}
+
 impl Shell {
     /// Builds the elements on the cells of a mesh. `number`: system number of each mesh node; `unknowns`: of the nodes of the system, with
     /// rotations.
@@ -59,6 +64,7 @@ impl Shell {
             smallest: f64::INFINITY,
             layers: through.layers(),
             pass: None,
+            sees_all: sees_all(spec.formulation, through.layers().is_some()),
         };
         let mut centres = Vec::new();
         for (place, &cell) in spec.cells.iter().enumerate() {

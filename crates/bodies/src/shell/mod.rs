@@ -67,6 +67,8 @@ pub struct Shell {
     layers: Option<Layers>,
     /// Of quadrilaterals with one point: elements side by side.
     pass: Option<Pass>,
+    /// Whether what one point does not see has the stiffness of the material: its energy is strain energy then and that of no hourglass modes.
+    sees_all: bool,
 }
 
 impl Shell {
@@ -137,7 +139,14 @@ impl Shell {
             });
         }
         Ok(match (self.turns(), &self.layers) {
-            (true, _) => self.finite_force(at, new, scratch, f),
+            (true, _) => {
+                let stored = self.finite_force(at, new, scratch, f);
+                let hourglass = if self.sees_all { 0.0 } else { stored.hourglass };
+                Stored {
+                    hourglass,
+                    ..stored
+                }
+            }
             (false, Some(layers)) => self.small_flow(layers, at, new, (&mut scratch.shells, f)),
             (false, None) => Stored {
                 strain: self.small_force(at, f),

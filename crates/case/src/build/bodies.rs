@@ -76,7 +76,7 @@ impl Builder<'_> {
                 cells,
                 kinematics,
                 material,
-                formulation: formulation(body.formulation),
+                formulation: formulation(body.formulation, (kinematics, &material)),
                 weights: None,
                 exact_products: false,
                 viscosity: body.bulk_viscosity.map(Into::into),
@@ -266,12 +266,28 @@ fn kinematics(section: Option<&Section>) -> Kinematics {
     }
 }
 
-fn formulation(given: schema::Formulation) -> Formulation {
+/// Factor of the stiffness against hourglass modes where nothing else is said: of elastic shells that of full integration, with which they
+/// meet the published displacements on the usual meshes (`one-point-shells`), where a twentieth bends in its plane with a twentieth of the
+/// stiffness that one element over the height has; of metals a small one, as it does not flow with the metal.
+fn hourglass(kinematics: Kinematics, material: &Law) -> f64 {
+    let is_shell = matches!(kinematics, Kinematics::Shell(_));
+    match is_shell && matches!(material, Law::Elastic(_)) {
+        true => 1.0,
+        false => 0.05,
+    }
+}
+
+fn formulation(
+    given: schema::Formulation,
+    (kinematics, material): (Kinematics, &Law),
+) -> Formulation {
     match given {
         schema::Formulation::Named(FormulationName::Full) => Formulation::Full,
         schema::Formulation::Named(FormulationName::MeanDilatation) => Formulation::BBar,
         schema::Formulation::With(FormulationWith::Reduced(reduced)) => Formulation::Reduced {
-            hourglass: reduced.hourglass,
+            hourglass: reduced
+                .hourglass
+                .unwrap_or_else(|| hourglass(kinematics, material)),
         },
     }
 }

@@ -117,15 +117,11 @@ pub enum FormulationWith {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Reduced {
-    /// Factor of the stiffness against hourglass modes; of shells relative to that of full integration in a parallelogram, so that elastic
-    /// shells take 1.
-    #[serde(default = "twentieth")]
+    /// Factor of the stiffness against hourglass modes; of shells relative to that of full integration in a parallelogram. Default: 1 for
+    /// shells of an elastic material, which then bend in their plane as with full integration; 0.05 for shells of a metal, whose
+    /// stiffness against hourglass modes does not flow with it, and for cells of solids.
     #[schemars(extend("exclusiveMinimum" = 0.0, "maximum" = 1.0))]
-    pub hourglass: f64,
-}
-
-fn twentieth() -> f64 {
-    0.05
+    pub hourglass: Option<f64>,
 }
 
 /// A rigid body. What is left out is that of its cells with the density of its material.
