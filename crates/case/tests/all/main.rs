@@ -5,6 +5,7 @@
 
 mod across_zones;
 mod allowables;
+mod bolts;
 mod bystanders;
 mod checks;
 mod compare;
