@@ -20,6 +20,7 @@ mod gather;
 mod gyroscopic;
 mod kinematics;
 mod nodes;
+mod pretension;
 mod reduced;
 mod reducible;
 mod release;
@@ -44,7 +45,8 @@ pub use beam::{
 pub use block::by_kind;
 pub use body::Body;
 pub use discrete::{
-    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass, VisitRow,
+    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass, Tightened,
+    VisitRow,
 };
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
@@ -54,6 +56,7 @@ pub use finite::{
 };
 pub use flowing::Fibre;
 pub use kinematics::{Kinematics, MassKind};
+pub use pretension::{Bolt, TightenedCell};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;
 pub use release::Release;

@@ -80,6 +80,9 @@ impl LargeBeam {
         if small.released.iter().flatten().any(|released| *released) {
             return Err(refused("hinges"));
         }
+        if !small.bolts().is_empty() {
+            return Err(refused("cells that are tightened"));
+        }
         if small.has_foundation() || small.has_fluid() {
             return Err(refused("a foundation or a fluid around them"));
         }

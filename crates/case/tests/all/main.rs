@@ -6,6 +6,7 @@
 mod across_zones;
 mod allowables;
 mod assumed;
+mod bolts;
 mod bystanders;
 mod checks;
 mod compare;

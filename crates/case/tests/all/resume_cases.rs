@@ -29,6 +29,7 @@ const BARS: &[Small] = &[
 /// Beams, shells, and what is reduced to modes.
 pub const THIN: &[Small] = &[
     ("beam-on-stop/case.toml", &[]),
+    ("bolted-plates/case.toml", &[]),
     ("dropped-box/case.toml", &[]),
     ("flexible-pendulum/case.toml", &[]),
     ("mast-in-zones/case.toml", &[]),

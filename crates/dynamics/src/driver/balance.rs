@@ -54,6 +54,7 @@ impl Driver {
         new.history.copy_from_slice(&self.vectors.history);
         new.contact_force.copy_from_slice(&self.vectors.contact);
         new.link_force.clone_from(&self.link_force);
+        self.keep_bolts();
         self.end_interface();
         self.crush();
         Ok(())

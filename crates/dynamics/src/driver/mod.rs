@@ -18,6 +18,7 @@ mod apart;
 mod approach;
 mod attempt;
 mod balance;
+mod bolts;
 mod candidates;
 mod carried;
 mod closing;

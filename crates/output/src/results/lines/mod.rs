@@ -1,6 +1,7 @@
 //! The lines of the verdict of a run, one function each. To add one: a function from the evidence to what it finds, in the
 //! file of its topic, and its name in [`ALL`].
 
+mod bolts;
 mod chatter;
 mod convergence;
 mod crossing;
@@ -46,6 +47,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     explicit::loose_nodes,
     chatter::of_contacts,
     tolerated::tension,
+    bolts::compressed,
     penetration::of_contacts,
     penetration::of_passing,
     crossing::of_contacts,
