@@ -7,6 +7,7 @@ mod across_zones;
 mod allowables;
 mod bolts;
 mod bystanders;
+mod capstan;
 mod checks;
 mod compare;
 mod damaged;
