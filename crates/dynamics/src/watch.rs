@@ -1,7 +1,7 @@
 //! The looks of a driver at what is assumed small ([`crate::small`]).
 
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, Distortion};
+use carom_bodies::{Across, Bending, Body, Distortion};
 use carom_contact::{Contact, Rows, Search, Target};
 use carom_mesh::Face;
 
@@ -39,9 +39,16 @@ struct Watched {
     lengths: Vec<f64>,
 }
 
-/// Distortion of a body, by its number, at a displacement (m), by the number of the look; that found before where it is larger.
-pub(crate) type DistortionOf<'a> =
-    dyn Fn(usize, (&[f64], usize), &Distortion) -> Option<Distortion> + 'a;
+/// What a look finds in a body: its distortion, or what was found before where that is larger, and how far it locks in bending.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct OfBody {
+    pub(crate) distortion: Option<Distortion>,
+    pub(crate) bending: Option<Bending>,
+    pub(crate) across: Option<Across>,
+}
+
+/// What is found in a body, by its number, at a displacement (m), by the number of the look; `before`: its distortion so far.
+pub(crate) type LookAt<'a> = dyn Fn(usize, (&[f64], usize), &Distortion) -> OfBody + 'a;
 
 impl Watch {
     pub(crate) fn new(system: &System) -> Watch {
@@ -59,17 +66,19 @@ impl Watch {
 
     /// Looks at a state, the end of the given step, if it is time to.
     pub(crate) fn look_alone(&mut self, system: &System, step: u64, state: &mut State) {
-        if state.records.small.is_due(step, &state.ledger) {
-            let of = |body: usize, (u, looks): (&[f64], usize), before: &Distortion| {
-                system.bodies[body].distortion(u, looks, before)
+        let energies = (&state.ledger, state.assemblies.largest);
+        if state.records.small.is_due(step, energies) {
+            let of = |body: usize, (u, looks): (&[f64], usize), before: &Distortion| OfBody {
+                distortion: system.bodies[body].distortion(u, looks, before),
+                bending: system.bodies[body].bending(u),
+                across: system.bodies[body].across(u),
             };
             self.look(system, &of, state);
         }
     }
 
-    /// Looks at a state. `distortion`: of a body at a displacement, by the number of the look, or what was found before where that is
-    /// larger.
-    pub(crate) fn look(&mut self, system: &System, distortion: &DistortionOf, state: &mut State) {
+    /// Looks at a state.
+    pub(crate) fn look(&mut self, system: &System, of: &LookAt, state: &mut State) {
         let energy = state.ledger.balance.strain;
         let found = &mut state.records.small;
         found.looks += 1;
@@ -80,8 +89,19 @@ impl Watch {
                 rotation: found.rotation.extreme(),
                 strain: found.strain.extreme(),
             };
-            let found_now = distortion(body, (u, looks), &before);
-            if let Some(Distortion { rotation, strain }) = found_now {
+            let OfBody {
+                distortion,
+                bending,
+                across,
+            } = of(body, (u, looks), &before);
+            if let Some(bending) = bending {
+                found.locking.take(bending, time);
+            }
+            if let Some(moved) = across {
+                found.across.take(moved.across, moved.place, time);
+                found.along = found.along.max(moved.along);
+            }
+            if let Some(Distortion { rotation, strain }) = distortion {
                 found.rotation.take(rotation.value, rotation.cell, time);
                 found.strain.take(strain.value, strain.cell, time);
             }

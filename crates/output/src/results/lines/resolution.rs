@@ -12,7 +12,7 @@ use crate::verdict::{Bounds, Line};
 const BOUNDS: Bounds = Bounds::Look(0.1);
 
 /// Peak over the largest of the run, below which nobody relies on it.
-const LESSER: f64 = 0.1;
+pub(super) const LESSER: f64 = 0.1;
 
 /// The contact whose largest force lasts the fewest steps.
 pub(super) fn of_peaks(evidence: &Evidence) -> Finding {
