@@ -15,7 +15,7 @@ use crate::rigid::Rigid;
 use crate::scratch::Scratch;
 use crate::shell::Shell;
 use crate::solid::{BodySpec, Solid};
-use crate::{Deleted, Error, FrequencyBound, Kinematics, Looks, Placement, Seen, Stored};
+use crate::{Bolt, Deleted, Error, FrequencyBound, Kinematics, Looks, Placement, Seen, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.
 #[derive(Debug)]
@@ -288,7 +288,8 @@ impl Body {
             Body::Beam(beam) => beam.history_len(),
             Body::LargeBeam(beam) => beam.history_len(),
             Body::Shell(shell) => shell.history_len(),
-            Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => 0,
+            Body::Discrete(discrete) => discrete.bolts().len(),
+            Body::Rigid(_) | Body::Reduced(_) => 0,
         }
     }
 
@@ -337,7 +338,10 @@ impl Body {
             Body::Beam(beam) => beam.force(at, new, f),
             Body::LargeBeam(beam) => beam.force(at, new, f),
             Body::Shell(shell) => shell.force(at, new, scratch, f),
-            Body::Discrete(discrete) => Ok(discrete.force(at, f)),
+            Body::Discrete(discrete) => {
+                new.copy_from_slice(at.old);
+                Ok(discrete.force(at, f))
+            }
             Body::Reduced(reduced) => Ok(reduced.force(at, f)),
             Body::Rigid(rigid) => {
                 rigid.add_force(at, f);
@@ -460,6 +464,25 @@ impl Body {
         match self {
             Body::Solid(solid) => solid.each_element_left(history, visit),
             other => other.each_element(visit),
+        }
+    }
+
+    /// The same for the elements that join their nodes in all directions: none of discrete elements, and of beams those that are not tightened
+    /// ([`Body::each_spring`] has what these hold).
+    pub fn each_joining_element(&self, visit: &mut dyn FnMut(&[u32])) {
+        match self {
+            Body::Discrete(_) => {}
+            Body::Beam(beam) => beam.each_joining_element(visit),
+            other => other.each_element(visit),
+        }
+    }
+
+    /// Bolts that a static stage tightens. The history of the body has the force that each keeps ([`Bolt::kept`]), in their order.
+    pub fn bolts(&self) -> &[Bolt] {
+        match self {
+            Body::Beam(beam) => beam.bolts(),
+            Body::Discrete(discrete) => discrete.bolts(),
+            _ => &[],
         }
     }
 

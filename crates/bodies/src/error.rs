@@ -81,6 +81,16 @@ pub enum Error {
         /// Name of the body.
         body: String,
     },
+    /// A cell of beams that cannot be tightened.
+    #[error("body '{body}': element {} cannot be tightened, since {why}", cell.index)]
+    Tightened {
+        /// Name of the body.
+        body: String,
+        /// The cell.
+        cell: ElementId,
+        /// Why.
+        why: &'static str,
+    },
     /// Beams of metal that flows with hinges.
     #[error(
         "body '{body}': hinges are those of elastic elements, and this material flows; take a body of its own for the elastic end"
@@ -259,6 +269,7 @@ impl Error {
             | Error::Mechanism { body, .. }
             | Error::LargeBeam { body, .. }
             | Error::NoShape { body }
+            | Error::Tightened { body, .. }
             | Error::FlowingHinges { body }
             | Error::BeamWeights { body }
             | Error::ShellCell { body, .. }

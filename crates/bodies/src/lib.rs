@@ -21,6 +21,7 @@ mod gyroscopic;
 mod kinematics;
 mod locking;
 mod nodes;
+mod pretension;
 mod reduced;
 mod reducible;
 mod release;
@@ -46,7 +47,7 @@ pub use block::by_kind;
 pub use body::Body;
 pub use discrete::{
     Across, Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass,
-    VisitRow,
+    Tightened, VisitRow,
 };
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
@@ -57,6 +58,7 @@ pub use finite::{
 pub use flowing::Fibre;
 pub use kinematics::{Kinematics, MassKind};
 pub use locking::Bending;
+pub use pretension::{Bolt, TightenedCell};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;
 pub use release::Release;

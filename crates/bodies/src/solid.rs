@@ -9,7 +9,6 @@ use carom_elements::Kind;
 use carom_materials::{Law, Plane};
 use carom_mesh::{ElementId, Mesh};
 
-use crate::Error;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, Visit, by_kind};
 use crate::continuum;
@@ -22,6 +21,7 @@ use crate::scaling::MassScaling;
 use crate::scratch::Scratch;
 use crate::shell::{Ply, ShellSection};
 use crate::weights::CellWeights;
+use crate::{Error, TightenedCell};
 use crate::{Kinematics, size};
 
 /// What a solid or a bar is made of.
@@ -39,23 +39,22 @@ pub struct BodySpec {
     pub formulation: Formulation,
     /// Weights of inertia and internal work; none for a body that is alone in its volume.
     pub weights: Option<CellWeights>,
-    /// Whether the internal work at small strain has a rule that is exact for weights times products of strains in straight cells: needed
-    /// for the bending patch of quadratic cells that overlap a beam.
+    /// Whether the internal work at small strain has a rule that is exact for weights times products of strains in straight cells: needed for the bending patch of quadratic cells that overlap a beam.
     pub exact_products: bool,
     /// Bulk viscosity; needs a law at finite strain.
     pub viscosity: Option<BulkViscosity>,
     /// Mass scaling.
     pub scaling: Option<MassScaling>,
-    /// Mean plastic strain over the points of an element at which it is deleted: its forces and energies are none from then on, its mass
-    /// stays. Needs a law with plastic strain and an explicit scheme. None: no element is deleted.
+    /// Mean plastic strain over the points of an element at which it is deleted: its forces and energies are none from then on, its mass stays. Needs a law with plastic strain and an explicit scheme. None: no element is deleted.
     pub deletion: Option<f64>,
     /// Hinges of beams.
     pub releases: Vec<Release>,
-    /// Layers of shells of several materials, from the side against which the normal points; `material` is then one of them that flows, if any does.
-    /// None: one material.
+    /// Layers of shells of several materials, from the side against which the normal points; `material` is then one of them that flows, if any does. None: one material.
     pub plies: Vec<Ply>,
     /// Thickness of shells at each node of the mesh, m, linear between them; a number at nodes of the body. None: that of the section.
     pub nodal_thickness: Option<Vec<f64>>,
+    /// Cells of beams that a static stage tightens.
+    pub tightened: Vec<TightenedCell>,
 }
 
 impl BodySpec {
@@ -80,6 +79,7 @@ impl BodySpec {
             releases: Vec::new(),
             plies: Vec::new(),
             nodal_thickness: None,
+            tightened: Vec::new(),
         }
     }
 

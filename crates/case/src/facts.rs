@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use carom_bodies::{
-    Beam, BeamTheory, Body, Discrete, DiscreteKind, Link, SectionProperties, Shell,
+    Beam, BeamTheory, Body, Bolt, Discrete, DiscreteKind, Link, SectionProperties, Shell,
 };
 use carom_contact::{Contact, Integration, Rows, Search, Sliding, Target};
 use carom_dynamics::{ModelLink, System, step_count};
@@ -59,7 +59,10 @@ pub(crate) fn facts_with(built: &Built, words: impl FnOnce(&[Approach]) -> Vec<F
                 body.as_reduced()
                     .map(|reduced| reduced_fact(built, k, reduced)),
             );
-            facts.extend(body.as_beam().map(|beam| beam_fact(system, k, beam)));
+            if let Some(beam) = body.as_beam() {
+                facts.push(beam_fact(system, k, beam));
+                facts.extend(body.bolts().iter().map(bolt_fact));
+            }
             facts.extend(body.as_shell().map(|shell| shell_fact(system, k, shell)));
             continue;
         };
@@ -246,6 +249,17 @@ fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
     )
 }
 
+/// A line for a cell of beams that is tightened.
+fn bolt_fact(bolt: &Bolt) -> Fact {
+    let Bolt {
+        force, stiffness, ..
+    } = bolt;
+    fact(
+        format!("pretension {}", bolt.name),
+        format!("{force:.6e} N, a cell of stiffness {stiffness:.6e} N/m"),
+    )
+}
+
 /// A line for discrete elements: how many, and what they are.
 fn discrete_fact(discrete: &Discrete) -> Fact {
     let count = discrete.cells().len();
@@ -265,6 +279,14 @@ fn discrete_fact(discrete: &Discrete) -> Fact {
         DiscreteKind::Fluid(gap) => (
             "fluid",
             format!("{:.6} kg added to the inner node", gap.masses[0]),
+        ),
+        DiscreteKind::Bolt(bolt) => (
+            "pretension",
+            format!(
+                "{:.6e} N, {}",
+                bolt.force,
+                linked(&bolt.link, ["stiffness", "N/m"])
+            ),
         ),
         DiscreteKind::Dashpot(link) => ("dashpot", linked(link, ["damping", "N s/m"])),
     };

@@ -47,6 +47,7 @@ const ORDER: &[&str] = &[
     "body",
     "mass",
     "spring",
+    "pretension",
     "dashpot",
     "stop",
     "rigid-link",

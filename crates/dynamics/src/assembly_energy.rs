@@ -78,6 +78,11 @@ impl AssemblyEnergy {
         put_in.max(ROUNDING * self.in_frame_of_model)
     }
 
+    /// Work that its materials took so far, with the strain energy at the start, J.
+    pub(crate) fn taken(&self) -> f64 {
+        self.taken.get()
+    }
+
     /// Adds the motion of its parts.
     fn take(&mut self, motion: &PartMotion) {
         self.taken.add(motion.taken);
@@ -131,11 +136,11 @@ impl AssemblyEnergies {
         self.largest = before.largest;
     }
 
-    /// Adds the end of a step. `obstacles`: work in the step of the obstacle of each contact, J.
+    /// Adds the end of a step. `parts`: each connected part; `obstacles`: work in the step of the obstacle of each contact, J.
     pub(crate) fn add(
         &mut self,
         system: &System,
-        part: impl Fn(usize) -> PartMotion,
+        parts: &[PartMotion],
         (records, obstacles): (&[ContactRecord], &[f64]),
     ) {
         let mut sum = 0.0;
@@ -143,9 +148,9 @@ impl AssemblyEnergies {
         for (number, energy) in self.all.iter_mut().enumerate() {
             let assembly = &assemblies.all[number];
             let mut all = PartMotion::default();
-            for motion in assembly.parts.iter().map(|&number| part(number)) {
-                energy.take(&motion);
-                all.include(&motion);
+            for motion in assembly.parts.iter().map(|&number| &parts[number]) {
+                energy.take(motion);
+                all.include(motion);
             }
             let mut contacts = 0.0;
             for &contact in &assembly.contacts {
@@ -182,6 +187,45 @@ impl PartMotion {
         self.of_scheme += other.of_scheme;
         for i in 0..3 {
             self.momentum[i] += other.momentum[i];
+        }
+    }
+}
+
+/// Makes the works that the internal forces took add up to what the materials took, `exact` (J). The mean of the forces at the start and the end of a
+/// step times the way is that energy where forces are linear in the way; at finite strain and rotation it differs by the third power of the step.
+/// Each part has as much of the difference as it has of the works.
+pub(crate) fn balance_taken(parts: &mut [PartMotion], exact: f64) {
+    let (mut taken, mut size) = (0.0, 0.0);
+    for part in &*parts {
+        taken += part.taken;
+        size += part.taken.abs();
+    }
+    if size == 0.0 {
+        return;
+    }
+    let missing = (exact - taken) / size;
+    for part in parts {
+        part.taken += missing * part.taken.abs();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn works_add_up_to_what_materials_took() {
+        let part = |taken: f64| PartMotion {
+            taken,
+            ..PartMotion::default()
+        };
+        let mut parts = [part(2.0), part(-1.0), part(0.0)];
+        balance_taken(&mut parts, 1.3);
+        let taken = parts.map(|part| part.taken);
+        // 0.3 J is missing, of 3 J
+        let expected = [2.2, -0.9, 0.0];
+        for (taken, expected) in taken.iter().zip(&expected) {
+            assert!((taken - expected).abs() < 1e-15, "{taken} J");
         }
     }
 }

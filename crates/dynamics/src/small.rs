@@ -3,12 +3,13 @@
 //!
 //! The driver looks at each of the first steps, at every 32nd then, and whenever the strain energy has grown by a quarter
 //! since the largest at which it looked: near the largest strain of a run it therefore looks at it. The looks of the last
-//! kind are few, since between a thousandth of the energy and all of it there are only so many quarters: 31.
+//! kind are few, since between a thousandth of the energy and all of it there are only so many quarters: 31. They are those of
+//! an assembly by itself, so that they do not depend on bodies that have nothing to do with it.
 
 use carom_bodies::{Bending, Extreme};
 use serde::{Deserialize, Serialize};
 
-use crate::ledger::Ledger;
+use crate::state::State;
 use crate::system::System;
 
 /// Steps before which there is a look at each.
@@ -106,10 +107,17 @@ pub struct Smallness {
     pub bodies: Vec<SmallStrain>,
     /// By contact; zeros with finite sliding, and against rigid planes, where both kinds of sliding are the same.
     pub contacts: Vec<SmallSliding>,
-    /// Looks so far.
-    pub looks: u64,
-    /// Largest strain energy at a look, J.
-    pub(crate) energy: f64,
+    /// By assembly.
+    pub(crate) looked: Vec<Looked>,
+}
+
+/// The looks at an assembly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Looked {
+    /// Those so far.
+    pub(crate) looks: u64,
+    /// Largest strain energy at one, J.
+    energy: f64,
 }
 
 impl Smallness {
@@ -117,7 +125,7 @@ impl Smallness {
         Smallness {
             bodies: vec![SmallStrain::default(); system.bodies.len()],
             contacts: vec![SmallSliding::default(); system.contacts.len()],
-            ..Smallness::default()
+            looked: vec![Looked::default(); system.assemblies.all.len()],
         }
     }
 
@@ -125,7 +133,7 @@ impl Smallness {
     pub(crate) fn follow(&mut self, before: &Smallness) {
         self.bodies.clone_from(&before.bodies);
         self.contacts.clone_from(&before.contacts);
-        (self.looks, self.energy) = (before.looks, before.energy);
+        self.looked.clone_from(&before.looked);
     }
 
     /// Takes what a zone has found; its bodies and contacts by their numbers in the whole.
@@ -136,19 +144,42 @@ impl Smallness {
         for (found, &contact) in zone.contacts.iter().zip(contacts) {
             self.contacts[contact] = *found;
         }
-        self.looks = self.looks.max(zone.looks);
     }
 
-    /// Whether a state is to be looked at. `own`: the largest energy in the frames of the assemblies, J, so that no look depends on the frame of
-    /// the model; zero where it is not known.
-    pub(crate) fn is_due(&self, step: u64, (ledger, own): (&Ledger, f64)) -> bool {
-        let energy = ledger.balance.strain;
-        let largest = if own > 0.0 {
-            own
-        } else {
-            ledger.largest_energy
-        };
-        let grown = energy > GROWTH * self.energy.max(LEAST * largest);
-        step < FIRST || step.is_multiple_of(EVERY) || grown
+    /// Looks so far at the assembly that has had the most.
+    pub fn looks(&self) -> u64 {
+        let looks = self.looked.iter().map(|looked| looked.looks);
+        looks.max().unwrap_or(0)
     }
+
+    /// The dynamics begin, whose energies are told by assembly.
+    pub(crate) fn begin_dynamics(&mut self) {
+        for looked in &mut self.looked {
+            looked.energy = 0.0;
+        }
+    }
+
+    /// Counts a look at an assembly with this strain energy, J.
+    pub(crate) fn count(&mut self, assembly: usize, energy: f64) {
+        let looked = &mut self.looked[assembly];
+        looked.looks += 1;
+        looked.energy = looked.energy.max(energy);
+    }
+}
+
+/// Strain energy of an assembly and its largest energy, J: in its own frame, with what materials dissipated; that of all bodies where
+/// they are not told by assembly.
+pub(crate) fn energies(state: &State, assembly: usize) -> [f64; 2] {
+    match state.assemblies.all.get(assembly) {
+        Some(own) => [own.taken(), own.largest],
+        None => [state.ledger.balance.strain, state.ledger.largest_energy],
+    }
+}
+
+/// Whether it is time to look at an assembly at the end of a step.
+pub(crate) fn is_due(state: &State, step: u64, assembly: usize) -> bool {
+    let looked = &state.records.small.looked[assembly];
+    let [energy, largest] = energies(state, assembly);
+    let grown = energy > GROWTH * looked.energy.max(LEAST * largest);
+    step < FIRST || step.is_multiple_of(EVERY) || grown
 }

@@ -103,6 +103,9 @@ pub struct InterfaceState {
     pub flight: Vec<f64>,
     /// Memory of the law: the largest penetration of the point so far, m; zero of laws without memory.
     pub crush: Vec<f64>,
+    /// Penetration at which the contact of a rigid body landed, m, until it is open: the part of a step by which the impact
+    /// is early or late. Points count as closed from there on.
+    pub landed: Vec<f64>,
 }
 
 impl InterfaceState {
@@ -116,6 +119,7 @@ impl InterfaceState {
             &self.opening,
             &self.flight,
             &self.crush,
+            &self.landed,
         ];
         arrays.iter().all(|array| array.len() == points)
             && self.status.len() == points
@@ -135,6 +139,7 @@ impl InterfaceState {
         self.watched.clone_from(&before.watched);
         self.flight.clone_from(&before.flight);
         self.crush.clone_from(&before.crush);
+        self.landed.clone_from(&before.landed);
     }
 
     /// Becomes a copy at some points, and already is one at the others, but for the time without force.
@@ -156,6 +161,7 @@ impl InterfaceState {
             self.status[point] = before.status[point];
             self.watched[point] = before.watched[point];
             self.crush[point] = before.crush[point];
+            self.landed[point] = before.landed[point];
         }
     }
 
@@ -303,6 +309,7 @@ pub(crate) fn state_without_motion(system: &System) -> State {
             watched: vec![false; points],
             flight: vec![f64::INFINITY; points],
             crush: vec![0.0; points],
+            landed: vec![0.0; points],
         },
         forces: Vec::new(),
         links: Links::default(),

@@ -5,6 +5,7 @@ use carom_bodies::{Across, Bending, Body, Distortion};
 use carom_contact::{Contact, Rows, Search, Target};
 use carom_mesh::Face;
 
+use crate::small::{energies, is_due};
 use crate::state::State;
 use crate::system::System;
 
@@ -16,6 +17,8 @@ pub(crate) struct Watch {
     rows: Rows,
     /// No displacement; empty where no contact is watched.
     still: Vec<f64>,
+    /// Whether it is time to look at each assembly.
+    due: Vec<bool>,
 }
 
 /// A contact seen from its other side.
@@ -61,58 +64,76 @@ impl Watch {
             between: contacts.map(|k| Between::new(system, k)).collect(),
             rows: Rows::default(),
             still,
+            due: Vec::new(),
         }
     }
 
-    /// Looks at a state, the end of the given step, if it is time to.
+    /// Looks at the assemblies of a state, the end of the given step, at which it is time to.
     pub(crate) fn look_alone(&mut self, system: &System, step: u64, state: &mut State) {
-        let energies = (&state.ledger, state.assemblies.largest);
-        if state.records.small.is_due(step, energies) {
+        let mut due = std::mem::take(&mut self.due);
+        due.clear();
+        due.extend((0..system.assemblies.all.len()).map(|number| is_due(state, step, number)));
+        if due.contains(&true) {
             let of = |body: usize, (u, looks): (&[f64], usize), before: &Distortion| OfBody {
                 distortion: system.bodies[body].distortion(u, looks, before),
                 bending: system.bodies[body].bending(u),
                 across: system.bodies[body].across(u),
             };
-            self.look(system, &of, state);
+            self.look((system, &due), &of, state);
         }
+        self.due = due;
     }
 
-    /// Looks at a state.
-    pub(crate) fn look(&mut self, system: &System, of: &LookAt, state: &mut State) {
-        let energy = state.ledger.balance.strain;
+    /// Looks at the assemblies of a state that are due.
+    pub(crate) fn look(
+        &mut self,
+        (system, due): (&System, &[bool]),
+        look_at: &LookAt,
+        state: &mut State,
+    ) {
+        for (assembly, _) in due.iter().enumerate().filter(|(_, due)| **due) {
+            let [energy, _] = energies(state, assembly);
+            state.records.small.count(assembly, energy);
+        }
+        let assemblies = &system.assemblies;
+        let of_body = |body: usize| assemblies.of_part[system.part_of_body[body]];
+        let is_due = |contact: usize| due[assemblies.of_contact(system, contact)];
         let found = &mut state.records.small;
-        found.looks += 1;
-        found.energy = found.energy.max(energy);
-        let (u, time, looks) = (&state.motion.u[..], state.time, found.looks as usize);
-        for (body, found) in found.bodies.iter_mut().enumerate() {
+        let (u, time) = (&state.motion.u[..], state.time);
+        for (body, of) in found.bodies.iter_mut().enumerate() {
+            let assembly = of_body(body);
+            if !due[assembly] {
+                continue;
+            }
             let before = Distortion {
-                rotation: found.rotation.extreme(),
-                strain: found.strain.extreme(),
+                rotation: of.rotation.extreme(),
+                strain: of.strain.extreme(),
             };
+            let looks = found.looked[assembly].looks as usize;
             let OfBody {
                 distortion,
                 bending,
                 across,
-            } = of(body, (u, looks), &before);
+            } = look_at(body, (u, looks), &before);
             if let Some(bending) = bending {
-                found.locking.take(bending, time);
+                of.locking.take(bending, time);
             }
             if let Some(moved) = across {
-                found.across.take(moved.across, moved.place, time);
-                found.along = found.along.max(moved.along);
+                of.across.take(moved.across, moved.place, time);
+                of.along = of.along.max(moved.along);
             }
             if let Some(Distortion { rotation, strain }) = distortion {
-                found.rotation.take(rotation.value, rotation.cell, time);
-                found.strain.take(strain.value, strain.cell, time);
+                of.rotation.take(rotation.value, rotation.cell, time);
+                of.strain.take(strain.value, strain.cell, time);
             }
         }
         for (k, between) in self.between.iter_mut().enumerate() {
-            if let Some(between) = between {
+            if let Some(between) = between.as_mut().filter(|_| is_due(k)) {
                 between.look(system, k, &mut self.rows, state);
             }
         }
         for (k, watched) in self.contacts.iter_mut().enumerate() {
-            if let Some(watched) = watched {
+            if let Some(watched) = watched.as_mut().filter(|_| is_due(k)) {
                 if system.contacts[k].moves() {
                     watched.pair_initially(system, k, (state.time, &self.still));
                 }

@@ -140,7 +140,7 @@ pub struct Margin {
 pub struct Check {
     /// What is compared: `von Mises stress`.
     pub quantity: String,
-    /// Of what: `body`, `support` or `spring`.
+    /// Of what: `body`, `support`, `spring` or `pretension`.
     pub kind: String,
     /// Its name in the case.
     pub name: String,

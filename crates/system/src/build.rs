@@ -48,10 +48,7 @@ impl System {
             });
         }
         let waiting = std::mem::take(&mut model.nonlinear.waiting);
-        let staged = match waiting.is_empty() || model.nonlinear.preload.is_none() {
-            true => None,
-            false => Some(model.with_held(waiting)),
-        };
+        let staged = model.staged(waiting);
         let (mut system, bodies, contacts) = System::assemble(model)?;
         if let Some(staged) = staged {
             let (mut staged, ..) = System::assemble(staged)?;
@@ -279,6 +276,7 @@ impl System {
             parts,
             unknowns,
             has_springs: bodies.iter().any(|body| !body.balances_itself()),
+            has_bolts: bodies.iter().any(|body| !body.bolts().is_empty()),
             has_dashpots: bodies.iter().any(Body::has_damping),
             nodes_of_whole: x.len(),
             sharp: crate::sharp::points(&contacts, &secondary_faces, &x),

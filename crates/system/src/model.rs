@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
-use carom_bodies::{BodySpec, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
+use carom_bodies::{BodySpec, DiscreteKind, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
 use carom_contact::{Initial, Integration, Law, Obstacle, Parts, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
@@ -189,15 +189,35 @@ impl ModelConstraint {
 }
 
 impl Model {
-    /// The same with some nodes held.
-    pub(crate) fn with_held(&self, nodes: Vec<u32>) -> Model {
+    /// The same in its static stage, where it differs there: `waiting` nodes are held, and bolts have no stiffness.
+    pub(crate) fn staged(&self, waiting: Vec<u32>) -> Option<Model> {
+        self.nonlinear.preload?;
+        if waiting.is_empty() && !self.has_bolts() {
+            return None;
+        }
         let mut model = self.clone();
         model.supports.push(Support {
-            nodes,
+            nodes: waiting,
             fix: [true; 3],
             fix_rotations: [true; 3],
         });
-        model
+        let cells = model.bodies.iter_mut();
+        for cell in cells.flat_map(|body| &mut body.spec.tightened) {
+            cell.tightens = true;
+        }
+        for some in &mut model.discrete {
+            if let DiscreteKind::Bolt(bolt) = &mut some.spec.kind {
+                bolt.tightens = true;
+            }
+        }
+        Some(model)
+    }
+
+    /// Whether a static stage tightens bolts.
+    fn has_bolts(&self) -> bool {
+        let is_bolt = |some: &ModelDiscrete| matches!(some.spec.kind, DiscreteKind::Bolt(_));
+        let tightened = |body: &ModelBody| !body.spec.tightened.is_empty();
+        self.discrete.iter().any(is_bolt) || self.bodies.iter().any(tightened)
     }
 
     /// The length that absolute tolerances are fractions of, m: the size of the mesh. Of a mesh without extent, such as a single

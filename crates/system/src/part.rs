@@ -238,6 +238,7 @@ impl System {
             nonlinear: of_nonlinear(&self.nonlinear, &bodies, &to),
             bodies,
             has_springs: self.has_springs,
+            has_bolts: self.has_bolts,
             has_dashpots: self.has_dashpots,
             nodes_of_whole: self.nodes_of_whole,
             assemblies: self.assemblies.clone(),

@@ -135,7 +135,10 @@ pub(crate) fn unknowns(
 fn turned_by_masses(model: &Model) -> BTreeSet<u32> {
     let has_inertia = |some: &&ModelDiscrete| match &some.spec.kind {
         DiscreteKind::Mass(point) => point.inertia != [0.0; 3],
-        DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => false,
+        DiscreteKind::Spring(_)
+        | DiscreteKind::Dashpot(_)
+        | DiscreteKind::Fluid(_)
+        | DiscreteKind::Bolt(_) => false,
     };
     let masses = model.discrete.iter().filter(has_inertia);
     let cells = masses.flat_map(|some| &some.spec.cells);

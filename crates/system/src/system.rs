@@ -61,6 +61,8 @@ pub struct System {
     pub bodies: Vec<Body>,
     /// Whether there are springs: their forces may have a resultant.
     pub has_springs: bool,
+    /// Whether a static stage tightens bolts.
+    pub has_bolts: bool,
     /// Whether there are dashpots.
     pub has_dashpots: bool,
     /// Number of nodes of the whole model.
@@ -135,7 +137,7 @@ pub struct System {
     pub initial_displacement: Vec<f64>,
     /// Initial velocity, m/s; zero where an unknown is held.
     pub initial_velocity: Vec<f64>,
-    /// The same in its static stage, where bodies that wait for the dynamics are held; none without such bodies.
+    /// The same in its static stage, where bodies that wait for the dynamics are held and bolts have no stiffness; none without both.
     pub staged: Option<Arc<System>>,
 }
 

@@ -8,13 +8,15 @@
 //! with its components in space for translations and about the axes of the body for rotations: both sides get opposite forces at every
 //! instant. C₁ is that of the pass before, and the rows hold for the velocities at the end of the step,
 //!
-//! `C₁ v₁ = -m/(GIVEN DT)`, `m ← m + (h₀ - m)/MEAN`,
+//! `C₁ v₁ = -m/(4 T)`, `m ← m + (h₀ - m) DT/T`,
 //!
-//! with h₀ what places miss at its start ([`TurningRows::values`]) and m its running mean. Velocities alone do not keep places: where both
-//! sides turn by φ in an outer step, the places of several steps and of one differ by φ³/12 of their distance from the axis. What is given
-//! back in a step is a small part of a mean over many, because places of elastic waves miss by -(DT² - dt²)/12 of the relative
-//! acceleration, in phase with the multipliers: giving that back would do work. With `GIVEN = 4 MEAN` the recursion `h ← h - m/GIVEN` is
-//! damped critically; of a constant drift d in each step GIVEN d remains.
+//! with h₀ what places miss at its start ([`TurningRows::values`]) and m its running mean over a time T. Velocities alone do not keep
+//! places: where both sides turn by φ in an outer step, the places of several steps and of one differ by φ³/12 of their distance from
+//! the axis. What is given back in a step is a small part of a mean over many, because places of elastic waves miss by
+//! -(DT² - dt²)/12 of the relative acceleration, in phase with the multipliers: giving that back would do work. T is that of many
+//! waves across the bodies, whatever the step, so that what is left of a drift converges with it; and that of so many steps that a wave
+//! which they hardly resolve is averaged. With 4 T in one row and T in the other the recursion `h ← h - m DT/(4 T)` is damped critically; of a
+//! constant drift d in each step `4 d T/DT` remains.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -28,11 +30,14 @@ use carom_system::{LinkRow, ModelLink, System, Turned, TurningRows};
 use crate::error::Error;
 use crate::model::Zoned;
 
-/// Steps over which what places miss is averaged.
-const MEAN: f64 = 100.0;
+/// Time over which what places miss is averaged, over that of a wave across the longer of the bodies that the link joins.
+const WAVES: f64 = 100.0;
 
-/// One over the part of the mean that a step gives back: four times [`MEAN`].
-const GIVEN: f64 = 4.0 * MEAN;
+/// Least number of steps of that time.
+const LEAST: f64 = 100.0;
+
+/// Time in which the mean is given back, over that in which it is taken.
+const GIVEN: f64 = 4.0;
 
 /// Rows by zone: number of the row and its terms there.
 pub(crate) type ByZone = Vec<Vec<(u32, LinkRow)>>;
@@ -47,6 +52,8 @@ pub(crate) struct TurningLinks {
     frames_of: Vec<(usize, usize)>,
     /// By row that turns: its number among all, and its two zones with its place in each.
     rows: Vec<(u32, [(usize, usize); 2])>,
+    /// T of each of them without regard to steps, s.
+    times: Vec<f64>,
     /// The configuration in which rows are taken.
     u: Vec<f64>,
     frames: Vec<Rotation>,
@@ -87,9 +94,11 @@ impl TurningLinks {
         let number: Vec<u32> = (0..x.len() as u32).collect();
         for (first, link) in &links {
             let from = made.terms.len();
+            let time = WAVES * crossing(link, &nodes.list, systems);
             let at = (&number[..], &made.unknowns, &x[..]);
             made.turning.add(link, at, &mut made.terms)?;
             for row in (*first..).take(made.terms.len() - from) {
+                made.times.push(time);
                 let [inner, outer] = link.zones.map(|zone| {
                     let place = rows[zone].partition_point(|(own, _)| *own < row);
                     (zone, place)
@@ -131,6 +140,7 @@ impl TurningLinks {
             homes,
             frames_of,
             rows: Vec::new(),
+            times: Vec::new(),
             terms: Vec::new(),
             start: Vec::new(),
             missed: Default::default(),
@@ -186,7 +196,7 @@ impl TurningLinks {
         };
         let [before, mean] = &mut self.missed;
         for (row, h) in self.turning.values(&self.unknowns, &at) {
-            mean[row] = averaged(before[row], h);
+            mean[row] = averaged(before[row], h, share(dt, self.times[row]));
         }
         for (u, &(zone, unknown)) in self.u.iter_mut().zip(&self.homes) {
             *u += dt * drivers[zone].state().motion.v[unknown as usize];
@@ -208,8 +218,9 @@ impl TurningLinks {
             (&motion.u[..], &motion.frames[..])
         });
         self.write(rows);
-        for ((row, _), mean) in self.rows.iter().zip(&self.missed[1]) {
-            defect[*row as usize] += given_back(*mean) / dt;
+        let means = self.missed[1].iter().zip(&self.times);
+        for ((row, _), (mean, time)) in self.rows.iter().zip(means) {
+            defect[*row as usize] += given_back(*mean, share(dt, *time)) / dt;
         }
     }
 
@@ -292,14 +303,45 @@ impl TurningLinks {
     }
 }
 
-/// The running mean of what places miss, after `missed`.
-fn averaged(mean: f64, missed: f64) -> f64 {
-    mean + (missed - mean) / MEAN
+/// The part of the time of the mean that a step of `dt` (s) takes. `time`: of the waves, s.
+fn share(dt: f64, time: f64) -> f64 {
+    dt / time.max(LEAST * dt)
 }
 
-/// What a step gives back.
-fn given_back(mean: f64) -> f64 {
-    mean / GIVEN
+/// The running mean of what places miss, after `missed` in a step of this share.
+fn averaged(mean: f64, missed: f64, share: f64) -> f64 {
+    mean + share * (missed - mean)
+}
+
+/// What a step of this share gives back.
+fn given_back(mean: f64, share: f64) -> f64 {
+    mean * share / GIVEN
+}
+
+/// Time that a wave takes across the longer of the bodies that a link joins, s; zero of bodies without waves. `nodes`: zone and number in
+/// the mesh of each node of the link.
+fn crossing(link: &ModelLink, nodes: &[(usize, u32)], systems: &[Arc<System>]) -> f64 {
+    let terms = link
+        .rows
+        .iter()
+        .flat_map(|row| row.inner.iter().chain(&row.outer));
+    let joined: BTreeSet<usize> = terms.map(|term| term.node as usize).collect();
+    let mut longest = 0.0_f64;
+    for (zone, system) in systems.iter().enumerate() {
+        let own = joined
+            .iter()
+            .map(|&node| nodes[node])
+            .filter(|(of, _)| *of == zone);
+        let own: Vec<u32> = own.map(|(_, node)| system.number[node as usize]).collect();
+        let sizes = system.diagonals.iter().zip(&system.body_masses);
+        for (body, (size, masses)) in system.bodies.iter().zip(sizes) {
+            let has = |node: &u32| masses.binary_search_by_key(node, |(own, _)| *own).is_ok();
+            if let Some(waves) = body.wave_speed().filter(|_| own.iter().any(has)) {
+                longest = longest.max(size / waves);
+            }
+        }
+    }
+    longest
 }
 
 /// Nodes of links, by zone and number in the mesh, in the order of their own numbers.
@@ -344,32 +386,44 @@ impl Nodes {
 
 #[cfg(test)]
 mod tests {
-    use super::{GIVEN, MEAN, averaged, given_back};
+    use super::{GIVEN, LEAST, averaged, given_back, share};
 
-    /// Places after so many steps that miss by `missed` at first and by `drift` more in each, and the least of them.
-    fn places(mut missed: f64, drift: f64, steps: usize) -> [f64; 2] {
+    /// Places after so many steps of this share that miss by `missed` at first and by `drift` more in each, and the least of them.
+    fn places(mut missed: f64, drift: f64, (steps, share): (usize, f64)) -> [f64; 2] {
         let (mut mean, mut least) = (0.0, missed);
         for _ in 0..steps {
-            mean = averaged(mean, missed);
-            missed += drift - given_back(mean);
+            mean = averaged(mean, missed, share);
+            missed += drift - given_back(mean, share);
             least = f64::min(least, missed);
         }
         [missed, least]
     }
 
-    /// With both roots at 1 - 1/(2 MEAN), a miss behaves as (1 + a k) q^k. A root of larger imaginary part would swing to minus exp(-π) = 4 %, and a slower one
-    /// would leave more than e^-9 after 30 MEAN.
+    /// With both roots at 1 - s/2, a miss behaves as (1 + a k) q^k. A root of larger imaginary part would swing to minus exp(-π) = 4 %, and a slower one
+    /// would leave more than e^-9 after 30 T.
     #[test]
     fn what_places_miss_is_given_back_without_swinging() {
-        let [left, least] = places(1.0, 0.0, (30.0 * MEAN) as usize);
+        let [left, least] = places(1.0, 0.0, ((30.0 * LEAST) as usize, 1.0 / LEAST));
         assert!(left.abs() < 1e-4, "{left}");
         assert!(least > -1e-2, "{least}");
     }
 
     /// The fixed point of the recursion.
     #[test]
-    fn of_a_drift_as_many_steps_remain_as_are_given_back_in() {
-        let [left, _] = places(0.0, 1e-6, (30.0 * MEAN) as usize);
-        assert!((left / (GIVEN * 1e-6) - 1.0).abs() < 1e-3, "{left}");
+    fn of_a_drift_as_much_remains_as_is_given_back() {
+        let [left, _] = places(0.0, 1e-6, ((30.0 * LEAST) as usize, 1.0 / LEAST));
+        assert!((left / (GIVEN * LEAST * 1e-6) - 1.0).abs() < 1e-3, "{left}");
+    }
+
+    /// After a T, (1 + ½) e^(-½) = 0.91 of a miss is left, to first order in the step over T; steps that are too large for T take a
+    /// hundred.
+    #[test]
+    fn what_is_left_of_a_miss_belongs_to_the_time_not_to_the_steps() {
+        let exact = 1.5 * (-0.5_f64).exp();
+        for steps in [100, 1000, 10_000] {
+            let [left, _] = places(1.0, 0.0, (steps, share(1.0 / steps as f64, 1.0)));
+            assert!((left - exact).abs() < 1.0 / steps as f64, "{steps}: {left}");
+        }
+        assert_eq!(share(2.0, 1.0), 1.0 / LEAST);
     }
 }

@@ -368,6 +368,7 @@ fn take_point((whole, to): (&mut InterfaceState, usize), (own, from): (&Interfac
     whole.gap[to] = own.gap[from];
     whole.rate[to] = own.rate[from];
     whole.opening[to] = own.opening[from];
+    whole.landed[to] = own.landed[from];
     whole.status[to] = own.status[from];
     whole.watched[to] = own.watched[from];
     if let Some(friction) = own.friction.get(from) {

@@ -77,9 +77,10 @@ impl Beam {
         }
     }
 
-    /// Numbers that its fibres keep from one step to the next.
+    /// Numbers that its fibres or bolts keep from one step to the next.
     pub(crate) fn history_len(&self) -> usize {
-        self.flowing.as_ref().map_or(0, Flowing::history_len)
+        let bolts = self.bolts().len();
+        self.flowing.as_ref().map_or(bolts, Flowing::history_len)
     }
 
     /// Largest equivalent plastic strain of the fibres of each element; none where nothing flows.

@@ -5,6 +5,7 @@
 //! the fibres of its sections.
 
 mod axis;
+mod bolts;
 mod checks;
 mod condensation;
 mod element;
@@ -16,6 +17,7 @@ mod large;
 mod results;
 mod section;
 mod strain;
+mod tightened;
 
 use std::ops::Range;
 
@@ -36,6 +38,7 @@ pub use self::section::{
 use self::checks::{check, end_weights};
 use self::element::{Element, EndWeights, Matrix};
 use self::extremes::Places;
+use self::tightened::Bolts;
 use crate::discrete::VisitRow;
 use crate::flowing::Flowing;
 use crate::release::Release;
@@ -76,6 +79,7 @@ pub struct Beam {
     flowing: Option<Flowing>,
     /// Where its sections have their largest stresses; none where that is not known.
     places: Option<Places>,
+    bolts: Bolts,
 }
 
 impl Beam {
@@ -108,6 +112,7 @@ impl Beam {
             condensed: Vec::new(),
             released: Vec::new(),
             flowing: None,
+            bolts: Bolts::of(&spec.cells, &spec.tightened),
             name: spec.name,
             cells: spec.cells,
         };
@@ -154,12 +159,14 @@ impl Beam {
             Some(law) => Some(beam.fibred(law)?),
             None => None,
         };
+        beam.complete_bolts()?;
         Ok(beam)
     }
 
     /// K of an element in its own axes, with that of its foundation.
     fn whole_stiffness(&self, element: usize) -> Matrix {
         let mut k = self.element(element).stiffness();
+        self.loosen(element, &mut k);
         let ground = self.element(element).foundation();
         for (k, ground) in k.iter_mut().flatten().zip(ground.iter().flatten()) {
             *k += ground;
@@ -185,8 +192,9 @@ impl Beam {
         self.section.added_mass != 0.0
     }
 
-    /// Visits the displacements that the foundation opposes, as unknowns and coefficients.
+    /// Visits the displacements that the foundation opposes, and what cells without axial stiffness hold, as unknowns and coefficients.
     pub(crate) fn each_spring(&self, visit: &mut VisitRow) {
+        self.each_row_of_loose(visit);
         if !self.has_foundation() {
             return;
         }
@@ -399,7 +407,10 @@ impl Beam {
         f: &mut [f64],
     ) -> Result<Stored, Error> {
         match &self.flowing {
-            None => Ok(self.linear_force(at, f)),
+            None => {
+                new.copy_from_slice(at.old);
+                Ok(self.linear_force(at, f))
+            }
             Some(_) if at.from.is_some() => Err(self.no_between()),
             Some(flowing) => Ok(flowing.force(at, new, f)),
         }

@@ -40,7 +40,7 @@ impl Beam {
                 Some(flowing) => self.flowed(flowing, (element, &local), (u, history)),
             };
             SectionForces {
-                force: [f[6], f[7], f[8]],
+                force: [f[6] + self.kept_force(element, history), f[7], f[8]],
                 moment_first: [-f[3], -f[4], -f[5]],
                 moment_second: [f[9], f[10], f[11]],
             }

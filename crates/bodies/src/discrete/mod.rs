@@ -1,4 +1,4 @@
-//! Point masses, springs and dashpots.
+//! Point masses, springs and dashpots, and bolts between two nodes.
 //!
 //! A spring or a dashpot is between two nodes a and b, or between a node a and the ground, which does not move. Along a
 //! unit vector n its elongation is `e = n · (u_b - u_a)`, with `u_b = 0` on the ground. Its force F, positive in tension, is
@@ -9,6 +9,7 @@
 //! [`Body::balances_itself`](crate::Body::balances_itself).
 
 mod across;
+mod bolt;
 mod curve;
 mod fluid;
 
@@ -22,7 +23,7 @@ pub use self::across::Across;
 pub use self::curve::{Curve, CurveError};
 pub use self::fluid::FluidGap;
 use crate::gyroscopic;
-use crate::{Error, Placement, Stored};
+use crate::{Bolt, Error, Placement, Stored};
 
 /// What is called for each row, of unknowns and coefficients.
 pub type VisitRow<'a> = dyn FnMut(&[(usize, f64)]) + 'a;
@@ -45,6 +46,7 @@ impl DiscreteSpec {
         match &self.kind {
             DiscreteKind::Mass(_) | DiscreteKind::Fluid(_) => true,
             DiscreteKind::Spring(link) => link.curve.is_line(),
+            DiscreteKind::Bolt(_) => true,
             DiscreteKind::Dashpot(_) => false,
         }
     }
@@ -61,6 +63,8 @@ pub enum DiscreteKind {
     Dashpot(Link),
     /// The inertia of a fluid in a gap between two bodies.
     Fluid(FluidGap),
+    /// Bolts.
+    Bolt(Tightened),
 }
 
 /// A mass at a node, and its moments of inertia.
@@ -90,6 +94,17 @@ pub struct Link {
     pub curve: Curve,
     /// Unit vector n from the first end to the second one, or to the ground; none for all directions.
     pub axis: Option<[f64; 3]>,
+}
+
+/// Springs that a static stage tightens; see [`Bolt`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tightened {
+    /// The line of the stiffness, and the axis.
+    pub link: Link,
+    /// Force of each at the end of the static stage, N, positive in tension.
+    pub force: f64,
+    /// Whether this is the static stage: they have no stiffness.
+    pub tightens: bool,
 }
 
 /// The rotations of the nodes of point masses with extent, and the moment of inertia of each.
@@ -138,6 +153,7 @@ pub struct Discrete {
     rotations: Vec<(usize, f64)>,
     /// First rotations of point masses in space whose axes turn with their nodes.
     spinning: Vec<usize>,
+    bolts: Vec<Bolt>,
 }
 
 impl Discrete {
@@ -159,7 +175,10 @@ impl Discrete {
         };
         let most = match spec.kind {
             DiscreteKind::Mass(_) => 1,
-            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => 2,
+            DiscreteKind::Spring(_)
+            | DiscreteKind::Dashpot(_)
+            | DiscreteKind::Fluid(_)
+            | DiscreteKind::Bolt(_) => 2,
         };
         let alone = |per: usize| per == 1 && matches!(spec.kind, DiscreteKind::Fluid(_));
         let unfit = |cell: &&ElementId| of(cell).len() != per || per > most || alone(per);
@@ -177,9 +196,10 @@ impl Discrete {
         let first = |ends: &[u32; 2]| ends.map(|node| unknowns.first(node));
         let rotations = match &spec.kind {
             DiscreteKind::Mass(point) => rotations(&spec.name, point, &nodes, unknowns)?,
-            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => {
-                Vec::new()
-            }
+            DiscreteKind::Spring(_)
+            | DiscreteKind::Dashpot(_)
+            | DiscreteKind::Fluid(_)
+            | DiscreteKind::Bolt(_) => Vec::new(),
         };
         let turns = |node: &u32| unknowns.frame(*node).is_some() && mesh.dim == 3;
         let spinning = match rotations.is_empty() {
@@ -192,7 +212,7 @@ impl Discrete {
             }
         };
         let corners = |cell: &ElementId| [of(cell)[0], of(cell)[per - 1]];
-        Ok(Discrete {
+        let mut discrete = Discrete {
             lengths: across::lengths(mesh, spec.cells.iter().map(corners)),
             rotations,
             spinning,
@@ -203,7 +223,10 @@ impl Discrete {
             kind: spec.kind,
             dim: mesh.dim,
             per,
-        })
+            bolts: Vec::new(),
+        };
+        discrete.bolts = discrete.bolted();
+        Ok(discrete)
     }
 
     /// Name as in the case file.
@@ -244,7 +267,11 @@ impl Discrete {
 
     /// Whether the elements have stiffness.
     pub(crate) fn has_stiffness(&self) -> bool {
-        matches!(self.kind, DiscreteKind::Spring(_))
+        match &self.kind {
+            DiscreteKind::Spring(_) => true,
+            DiscreteKind::Bolt(bolt) => !bolt.tightens,
+            DiscreteKind::Mass(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => false,
+        }
     }
 
     /// Whether its mass couples nodes.
@@ -256,6 +283,7 @@ impl Discrete {
         match &self.kind {
             DiscreteKind::Mass(_) | DiscreteKind::Fluid(_) => None,
             DiscreteKind::Spring(link) | DiscreteKind::Dashpot(link) => Some(link),
+            DiscreteKind::Bolt(bolt) => Some(&bolt.link),
         }
     }
 
@@ -299,7 +327,9 @@ impl Discrete {
     pub fn across(&self, u: &[f64]) -> Option<Across> {
         let axis = match &self.kind {
             DiscreteKind::Mass(_) => return None,
-            DiscreteKind::Spring(link) | DiscreteKind::Dashpot(link) => link.axis?,
+            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Bolt(_) => {
+                self.link()?.axis?
+            }
             // in the plane the axis is across it
             DiscreteKind::Fluid(gap) => gap.axis.unwrap_or([0.0; 3]),
         };
@@ -313,18 +343,19 @@ impl Discrete {
         Some(across::farthest(&axis, ways))
     }
 
-    /// Name of the kind: `mass`, `spring`, `dashpot` or `fluid`.
+    /// Name of the kind: `mass`, `spring`, `dashpot`, `fluid` or `pretension`.
     pub fn kind_name(&self) -> &'static str {
         match self.kind {
             DiscreteKind::Mass(_) => "mass",
             DiscreteKind::Spring(_) => "spring",
             DiscreteKind::Dashpot(_) => "dashpot",
             DiscreteKind::Fluid(_) => "fluid",
+            DiscreteKind::Bolt(_) => "pretension",
         }
     }
 
     /// Sum of the forces of all elements along the axis or along one of those of space, N, positive in tension, and the mean of
-    /// what they depend on: the elongation (m) of springs, its rate (m/s) of dashpots. Zero of masses.
+    /// what they depend on: the elongation (m) of springs, its rate (m/s) of dashpots. Zero of masses. Of bolts the part of the stiffness.
     pub fn response(&self, direction: usize, [u, v]: [&[f64]; 2]) -> [f64; 2] {
         let Some(link) = self.link() else {
             return [0.0; 2];
@@ -421,7 +452,8 @@ impl Discrete {
                 let slope = match &self.kind {
                     DiscreteKind::Mass(_) | DiscreteKind::Fluid(_) => 0.0,
                     DiscreteKind::Dashpot(link) => by_v * link.curve.slope(along(at.v)),
-                    DiscreteKind::Spring(link) => {
+                    DiscreteKind::Bolt(bolt) if bolt.tightens => 0.0,
+                    DiscreteKind::Spring(link) | DiscreteKind::Bolt(Tightened { link, .. }) => {
                         by_u * match at.from {
                             None => link.curve.slope(along(at.u)),
                             Some(from) => link.curve.mean(along(from), along(at.u)).1,
@@ -463,15 +495,13 @@ impl Discrete {
         let Some(link) = self.spring() else {
             return;
         };
-        let mut row = Vec::new();
+        let mut entries = Vec::new();
         for first in &self.first {
             for direction in 0..self.directions() {
-                row.clear();
-                for (&first, sign) in first[..self.per].iter().zip([-1.0, 1.0]) {
-                    let n = axis(link, direction);
-                    row.extend((0..self.dim).map(|i| (first + i, sign * n[i])));
-                }
-                visit(&row);
+                entries.clear();
+                let n = axis(link, direction);
+                entries.extend(row(&first[..self.per], (n, self.dim)));
+                visit(&entries);
             }
         }
     }
@@ -516,7 +546,10 @@ impl Discrete {
                     gap.each_entry((&self.first[element], self.dim), add);
                     continue;
                 }
-                DiscreteKind::Spring(link) => stiffness * link.curve.slope(0.0),
+                DiscreteKind::Bolt(bolt) if bolt.tightens => 0.0,
+                DiscreteKind::Spring(link) | DiscreteKind::Bolt(Tightened { link, .. }) => {
+                    stiffness * link.curve.slope(0.0)
+                }
                 DiscreteKind::Dashpot(link) => damping * link.curve.slope(0.0),
             };
             for direction in 0..self.directions() {
@@ -552,6 +585,12 @@ impl Discrete {
             }
         }
     }
+}
+
+/// The elongation of an element along n, as unknowns and coefficients, from the first unknowns of its nodes.
+fn row(first: &[usize], (n, dim): ([f64; 3], usize)) -> impl Iterator<Item = (usize, f64)> + '_ {
+    let ends = first.iter().zip([-1.0, 1.0]);
+    ends.flat_map(move |(&first, sign)| (0..dim).map(move |i| (first + i, sign * n[i])))
 }
 
 /// The unit vector along which an element acts in one of its directions.

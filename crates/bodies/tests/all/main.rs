@@ -27,6 +27,7 @@ mod sizes;
 mod stiffness;
 mod stresses;
 mod threads;
+mod tightened;
 mod weights;
 
 #[global_allocator]

@@ -1,4 +1,4 @@
-//! What bodies, supports and springs may bear.
+//! What bodies, supports, springs and bolts may bear.
 
 use carom_dynamics::System;
 use carom_output::{AllowableSettings, Bearer};
@@ -49,6 +49,17 @@ impl Builder<'_> {
                 spring.stroke.map(|stroke| stroke.0),
             );
         }
+        let tightened: Vec<&str> = self.case.pretension.names().collect();
+        for (name, bolt) in given.pretension.iter() {
+            if !tightened.contains(&name) {
+                self.unknown_bearer("pretension", name, tightened.clone());
+                continue;
+            }
+            let bolts = system.bodies.iter().flat_map(|body| body.bolts());
+            let own = bolts.filter(|bolt| is_of(&bolt.name, name));
+            let own = own.map(|bolt| bolt.name.clone()).collect();
+            add(Bearer::Bolts(name.to_owned(), own), Some(bolt.force.0));
+        }
         all
     }
 
@@ -57,4 +68,13 @@ impl Builder<'_> {
         let problem = Problem::new(path, format!("no {kind} of this name"));
         self.problems.push(problem.unknown(name, names));
     }
+}
+
+/// Whether a bolt is the one of this name, or one of several.
+fn is_of(bolt: &str, name: &str) -> bool {
+    let number = bolt
+        .strip_prefix(name)
+        .and_then(|rest| rest.strip_prefix('-'));
+    let is_number = |text: &str| text.chars().all(|c| c.is_ascii_digit());
+    bolt == name || number.is_some_and(is_number)
 }

@@ -85,6 +85,7 @@ impl Builder<'_> {
                 releases: Vec::new(),
                 plies,
                 nodal_thickness,
+                tightened: Vec::new(),
             };
             let spec = self.hinged(mesh, (&path, body), spec);
             let spin = self.initial_spin(mesh, (&path, body), &spec);

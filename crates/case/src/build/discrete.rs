@@ -135,7 +135,7 @@ impl Builder<'_> {
     }
 
     /// The cells between two ends, and the axis from the node to the ground or from the first node to the second.
-    fn linked(
+    pub(super) fn linked(
         &mut self,
         mesh: &mut Mesh,
         path: &str,

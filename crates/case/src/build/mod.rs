@@ -28,6 +28,7 @@ mod oscillators;
 mod penetration;
 mod pieces;
 mod plan;
+mod pretensions;
 mod probes;
 mod profiles;
 mod reductions;
@@ -86,7 +87,7 @@ pub struct Built {
     pub stage: Option<(f64, u32)>,
     /// Contacts that are judged together, in the order of their names.
     pub levels: Vec<LevelSettings>,
-    /// What bodies, supports and springs may bear.
+    /// What bodies, supports, springs and bolts may bear.
     pub allowables: Vec<AllowableSettings>,
     /// Probes, in the order of their names.
     pub probes: Vec<BuiltProbe>,
@@ -221,6 +222,7 @@ impl Builder<'_> {
         let mut bodies = self.bodies(&mesh, &materials);
         let mut discrete = self.discrete(&mut mesh);
         discrete.extend(self.fluids(&mut mesh));
+        discrete.extend(self.pretensions(&mut mesh, &mut bodies));
         let mut constraints = self.constraints(&mesh, &bodies);
         let turning = self.nodes_with_rotations(&mesh);
         let (transitions, mut links) = self.transitions(&mesh, &bodies, &turning);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use carom_bodies::DiscreteKind;
+use carom_bodies::{DiscreteKind, Tightened};
 use carom_dynamics::System;
 use carom_output::plot::quantity;
 
@@ -75,7 +75,9 @@ fn oscillators(system: &System) -> impl Iterator<Item = Oscillator<'_>> {
                     DiscreteKind::Mass(point) => {
                         (one.name, one.mass) = (discrete.name(), one.mass + point.mass);
                     }
-                    DiscreteKind::Spring(link) => one.stiffness += link.curve.steepest(),
+                    DiscreteKind::Spring(link) | DiscreteKind::Bolt(Tightened { link, .. }) => {
+                        one.stiffness += link.curve.steepest();
+                    }
                     DiscreteKind::Dashpot(_) | DiscreteKind::Fluid(_) => {}
                 }
             }

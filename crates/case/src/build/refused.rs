@@ -116,6 +116,9 @@ impl Builder<'_> {
             Refusal::NoMass { element, .. } => {
                 let path = match self.case.spring.get(element) {
                     Some(_) => format!("spring.{element}.ends"),
+                    None if self.case.pretension.get(element).is_some() => {
+                        format!("pretension.{element}.ends")
+                    }
                     None => format!("dashpot.{element}.ends"),
                 };
                 Problem::new(path, error.to_string())

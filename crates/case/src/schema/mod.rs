@@ -17,6 +17,7 @@ mod mesh;
 mod named;
 mod obstacle;
 mod output;
+mod pretension;
 mod signal;
 mod time;
 mod zone;
@@ -65,9 +66,10 @@ pub use obstacle::{
 };
 pub use output::{
     Allowable, Allowables, BarReference, BodyAllowable, Checkpoint, Field, Fields, Histories,
-    Level, Mean, Motion, Output, Probe, ProbeSpectrum, Reference, Sides, SpringAllowable,
-    SupportAllowable,
+    Level, Mean, Motion, Output, PretensionAllowable, Probe, ProbeSpectrum, Reference, Sides,
+    SpringAllowable, SupportAllowable,
 };
+pub use pretension::Pretension;
 pub use signal::{
     AccelerationPoint, AccelerationSource, Baseline, Columns, DisplacementSource, FactorSource,
     Signal, SpectrumPoint, Synthetic,
@@ -114,6 +116,9 @@ pub struct Case {
     /// Springs, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub spring: Named<Spring>,
+    /// Bolts that the static stage tightens, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub pretension: Named<Pretension>,
     /// Dashpots, by name.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub dashpot: Named<Dashpot>,

@@ -149,6 +149,9 @@ pub struct Allowables {
     /// Springs by their names.
     #[serde(default, skip_serializing_if = "Named::is_empty")]
     pub spring: Named<SpringAllowable>,
+    /// Bolts by their names in `pretension`.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub pretension: Named<PretensionAllowable>,
 }
 
 /// What a body may bear, at the instants that are kept for pictures: between them it may have borne more.
@@ -180,6 +183,14 @@ pub struct SpringAllowable {
     pub force: Option<Force>,
     /// Largest mean of their elongations.
     pub stroke: Option<Length>,
+}
+
+/// What each bolt of a name may bear at the end of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+pub struct PretensionAllowable {
+    /// Largest force of a bolt, over the static stage and the dynamics.
+    pub force: Force,
 }
 
 /// What a probe writes.
@@ -224,7 +235,7 @@ pub struct Output {
     /// Checkpoints, from which `carom resume` goes on. One is always written at the end of a run. Default: one every 60 s of wall
     /// time, two kept.
     pub checkpoint: Option<Checkpoint>,
-    /// What bodies, supports and springs may bear; for contacts see `level`. Default: nothing is judged.
+    /// What bodies, supports, springs and bolts may bear; for contacts see `level`. Default: nothing is judged.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub allowable: Option<Allowables>,
 }

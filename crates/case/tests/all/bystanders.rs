@@ -1,4 +1,4 @@
-//! A body that touches nothing, far from all others, changes neither the forces nor the grades of static cases and of those of thin bodies.
+//! A body that touches nothing, far from all others, changes neither the forces nor the grades of the cases of the project.
 //!
 //! Twenty steps of each at its smallest. The body is elastic, flies, and steps as all do. What is solved at once differs by the rounding of the
 //! order of sums, what is iterated by the tolerance of the iterations: 1e-6 of the largest force of the case covers both, twenty steps of 1e-10
@@ -12,7 +12,8 @@ use carom_output::{Grade, Summary};
 
 use crate::compare::Nobody;
 use crate::resume::{after, cases, words};
-use crate::resume_cases::{STATIC, Small, THIN};
+use crate::resume_cases::{PLANE, SOLID, STATIC, Small, THIN};
+use crate::verdict::result;
 
 /// Steps of each run.
 const STEPS: u64 = 20;
@@ -127,4 +128,43 @@ fn cases_of_thin_bodies_do_not_see_a_body_far_away() {
 #[test]
 fn static_cases_do_not_see_a_body_far_away() {
     unchanged(STATIC);
+}
+
+#[test]
+fn cases_of_plane_bodies_do_not_see_a_body_far_away() {
+    unchanged(PLANE);
+}
+
+#[test]
+fn cases_of_solids_do_not_see_a_body_far_away() {
+    unchanged(SOLID);
+}
+
+/// A rubber block of 1 g strikes a plane, alone and beside a block of steel of 700 t that flies at 100 m/s: the tolerance of its forces is relative to
+/// them, so that the iterations are the same, and forces differ by rounding, 1e-16 times a condition of some 1e6.
+#[test]
+fn the_forces_of_a_light_block_are_as_accurate_beside_a_heavy_one() {
+    let light = r#"
+carom = 1
+mesh.generate.small.rectangle = { origin = [0.0, 0.0], size = [0.01, 0.01], elements = [6, 6] }
+material.rubber = { density = 1000.0, neo-hooke = { young = "1 MPa", poisson = 0.4 } }
+body.small = { region = "small", material = "rubber", section.plane-strain.thickness = 0.01, initial.velocity = [0.0, -10.0] }
+contact.ground = { secondary = "small.bottom", obstacle.plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }, law.velocity = {} }
+time = { end = "1.5 ms", step = "10 us", scheme.theta.theta = 0.5 }
+"#;
+    let heavy = r#"
+mesh.generate.big.rectangle = { origin = [100.0, 0.0], size = [3.0, 3.0], elements = [2, 2] }
+material.steel = { density = 7800.0, neo-hooke = { young = "210 GPa", poisson = 0.3 } }
+body.big = { region = "big", material = "steel", section.plane-strain.thickness = 10.0, initial.velocity = [100.0, 0.0] }
+"#;
+    let force = |text: &str| result(text).1["contact.ground.force_n"].clone();
+    let [alone, beside] = [light.to_owned(), format!("{light}{heavy}")].map(|text| force(&text));
+    let largest = alone.iter().copied().fold(0.0, f64::max);
+    assert!(largest > 1.0, "{largest} N");
+    for (alone, beside) in alone.iter().zip(&beside) {
+        assert!(
+            (alone - beside).abs() <= 1e-10 * largest,
+            "{alone} N, {beside} N"
+        );
+    }
 }

@@ -6,7 +6,9 @@
 mod across_zones;
 mod allowables;
 mod assumed;
+mod bolts;
 mod bystanders;
+mod capstan;
 mod checks;
 mod compare;
 mod damaged;

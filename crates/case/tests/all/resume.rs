@@ -99,7 +99,7 @@ pub fn content(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 /// Cuts a run after so many steps, twice, goes on with it, and compares what it leaves with a run that was not cut.
-fn compare(name: &str, input: &Input, cuts: [u64; 2]) {
+pub fn compare(name: &str, input: &Input, cuts: [u64; 2]) {
     let work = tempfile::tempdir().unwrap();
     let (whole, cut) = (
         work.path().join("whole.carom"),

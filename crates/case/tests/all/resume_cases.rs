@@ -29,6 +29,7 @@ const BARS: &[Small] = &[
 /// Beams, shells, and what is reduced to modes.
 pub const THIN: &[Small] = &[
     ("beam-on-stop/case.toml", &[]),
+    ("bolted-plates/case.toml", &[]),
     ("dropped-box/case.toml", &[]),
     ("flexible-pendulum/case.toml", &[]),
     ("mast-in-zones/case.toml", &[]),
@@ -45,7 +46,7 @@ pub const THIN: &[Small] = &[
 ];
 
 /// Plane and axisymmetric bodies.
-const PLANE: &[Small] = &[
+pub const PLANE: &[Small] = &[
     ("conveyor/case.toml", &[]),
     ("crushed-tube/case.toml", &["mesh.file=\"tube-coarse.msh\""]),
     ("oblique-bar/case.toml", &["mesh.file=\"bar-coarse.msh\""]),
@@ -80,7 +81,7 @@ pub const STATIC: &[Small] = &[
 ];
 
 /// Solids.
-const SOLID: &[Small] = &[
+pub const SOLID: &[Small] = &[
     ("bird-on-plate/case.toml", &[]),
     ("block-drop/case.toml", &[]),
     (

@@ -204,3 +204,52 @@ time = { end = 1.0, static = { end = 1.0, steps = 2 } }
     let force = finished.unwrap().summary.contacts["c"].peak_force;
     assert!((force / 100.0 - 1.0).abs() < 1e-8, "{force}");
 }
+
+/// A block is pressed on a rough plane with N, then its top is drawn by d. It slides all the way but for its shear of 1e-4 d: the friction force is μ N,
+/// and it takes μ N d less at most the way of one step, in whose course it rises. Contact and balance count the same work, which is what the support
+/// gave: what shear stores is 1e-4 of it.
+#[test]
+fn friction_of_a_static_stage_is_told() {
+    let (n, mu, way, steps) = (1e3, 0.3, 10e-3, 20);
+    let (summary, _) = result(&format!(
+        r#"
+carom = 1
+mesh.generate.b.rectangle = {{ origin = [0.0, 0.0], size = [0.2, 0.05], elements = [2, 1] }}
+material.m = {{ density = 1000.0, elastic = {{ young = 1e9, poisson = 0.3 }} }}
+body.b = {{ region = "b", material = "m", section.plane-strain.thickness = 0.1 }}
+load.weight = {{ on = "b.top", traction = [0.0, {pressure:?}], amplitude = [{{ time = 0.0, factor = 0.0 }}, {{ time = 1.0, factor = 1.0 }}] }}
+support.top.on = "b.top"
+support.top.move.x = [{{ time = 0.0, displacement = 0.0 }}, {{ time = 1.0, displacement = 0.0 }}, {{ time = 2.0, displacement = {way:?} }}]
+contact.foot = {{ secondary = "b.bottom", obstacle.plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}, law.displacement = {{}}, friction.coulomb = {mu:?} }}
+time = {{ end = 2.0, static = {{ end = 2.0, steps = {steps} }} }}
+"#,
+        pressure = -n / (0.2 * 0.1),
+    ));
+    let friction = summary.contacts["foot"].friction.as_ref().unwrap();
+    // equations are solved to 1e-10 of the forces
+    assert!(
+        (friction.peak_force / (mu * n) - 1.0).abs() < 1e-8,
+        "{} N",
+        friction.peak_force
+    );
+    let all = mu * n * way;
+    let step = 2.0 * way / f64::from(steps);
+    assert!(
+        friction.loss <= all && friction.loss >= all - mu * n * step,
+        "{} J of {all} J",
+        friction.loss
+    );
+    let lost = summary.energy.dissipations["friction"];
+    assert!(
+        (friction.loss / lost - 1.0).abs() < 1e-9,
+        "{} J, {lost} J",
+        friction.loss
+    );
+    let resultant = summary.contacts["foot"].peak_resultant.as_ref().unwrap();
+    let size = n * (1.0 + mu * mu).sqrt();
+    assert!(
+        (resultant.magnitude / size - 1.0).abs() < 1e-8,
+        "{} N of {size} N",
+        resultant.magnitude
+    );
+}

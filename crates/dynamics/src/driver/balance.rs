@@ -54,6 +54,7 @@ impl Driver {
         new.history.copy_from_slice(&self.vectors.history);
         new.contact_force.copy_from_slice(&self.vectors.contact);
         new.link_force.clone_from(&self.link_force);
+        self.keep_bolts();
         self.end_interface();
         self.crush();
         Ok(())
@@ -165,6 +166,7 @@ impl Driver {
                 interface.opening[point] = opening;
             }
         }
+        self.note_landings();
     }
 
     /// Renews the memory of the laws at the points that carry a force at the end of the step.

@@ -22,17 +22,14 @@ impl Driver {
         self.load_iteration();
         self.choose_candidates();
         for _ in 0..ADDITIONS {
-            match self.finds_all_at_once() {
-                true => self.leave_solve(),
-                false => self.begin_solve()?,
-            }
+            self.begin_forces()?;
             self.find_forces()?;
             self.look_further();
             if !self.add_missed() {
                 break;
             }
         }
-        Ok(())
+        self.limit_rebound()
     }
 
     /// The motion `dx` and the contact forces of a pass with the forces in `work` and the columns that are at hand.
@@ -41,8 +38,19 @@ impl Driver {
         self.find_forces()
     }
 
+    /// Begins the solve with the forces in `work` in the way in which contact forces are found.
+    pub(super) fn begin_forces(&mut self) -> Result<(), Error> {
+        match self.finds_all_at_once() {
+            true => {
+                self.leave_solve();
+                Ok(())
+            }
+            false => self.begin_solve(),
+        }
+    }
+
     /// Contact forces, and the motion with them.
-    fn find_forces(&mut self) -> Result<(), Error> {
+    pub(super) fn find_forces(&mut self) -> Result<(), Error> {
         let solved = self.solve_candidates();
         if solved.is_ok() {
             self.end_iteration();
@@ -55,6 +63,7 @@ impl Driver {
     /// Forces of the iteration without those of contacts, into `work`.
     fn load_iteration(&mut self) {
         self.begin_link_iteration();
+        self.rebound.begin();
         let jumps = self.jumps();
         let vectors = &mut self.vectors;
         vectors.work.copy_from_slice(&vectors.residual);

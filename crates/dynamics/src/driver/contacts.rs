@@ -16,7 +16,10 @@ const CLEARLY: f64 = 1e-3;
 impl Driver {
     /// The configuration in which a contact is paired.
     pub(super) fn paired_at(&self, number: usize) -> Paired {
-        self.manners[number].paired
+        match self.closings.instant(number) {
+            Some(instant) => Paired::Captured(instant),
+            None => self.manners[number].paired,
+        }
     }
 
     /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
@@ -46,7 +49,7 @@ impl Driver {
         let mut placed = None;
         for (k, contact) in system.contacts.iter().enumerate() {
             let paired = self.paired_at(k);
-            let ahead = predicts && self.looks_ahead(k);
+            let ahead = predicts && self.looks_ahead(k) && self.closings.instant(k).is_none();
             let motion = &self.state.motion;
             let Vectors {
                 x,
@@ -167,7 +170,7 @@ impl Driver {
             area: carrier.area,
             share: carrier.share,
             gap,
-            rate,
+            rate: self.rebound_of(point) * rate,
             start: self.map_of(self.system.contact_of(point)).start_in_way() * rate,
             gap_free,
             dt: self.moves(point),
@@ -202,8 +205,16 @@ impl Driver {
             let gap = self.state.interface.gap[point];
             return law.get().watches(gap, tolerance);
         }
+        if self
+            .closings
+            .instant(self.system.contact_of(point))
+            .is_some()
+        {
+            return law.get().watches(gap, tolerance);
+        }
+        let landed = self.state.interface.landed[point];
         let rate = self.rate_at_start(point);
-        told(law, (gap, rate), self.moves(point), tolerance)
+        told(law, (gap + landed, rate), self.moves(point), tolerance)
     }
 
     /// Whether no force moves a point, what its row moves being held but for rounding, and its law does not say the force either: the support
@@ -271,11 +282,19 @@ impl Driver {
 
     /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
     pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
+        let contacts = 0..self.system.contacts.len();
+        let worst = contacts.filter_map(|contact| self.worst_point_of(contact));
+        worst.reduce(|one, other| if other.1 > one.1 { other } else { one })
+    }
+
+    /// The same of a contact. Its forces are compared with the largest of its own.
+    fn worst_point_of(&self, contact: usize) -> Option<(usize, f64)> {
         let tolerance = self.gap_tolerance();
-        let forces = self.next.interface.force.iter();
+        let points = self.system.points_of(contact);
+        let forces = self.next.interface.force[points.clone()].iter();
         let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
         let mut worst: Option<(usize, f64)> = None;
-        for point in 0..self.system.points() {
+        for point in points {
             if self.told(point) == Some(false) {
                 continue;
             }

@@ -146,10 +146,11 @@ impl Driver {
                 of_scheme: inertia * sums.acceleration[1],
             }
         };
-        let assemblies = &mut self.next.assemblies;
-        assemblies.follow(&self.state.assemblies);
-        let contacts = (&self.next.records.contacts[..], &self.works.obstacles[..]);
-        assemblies.add(&self.system, part, contacts);
+        let mut motions = std::mem::take(&mut self.works.motions);
+        motions.clear();
+        motions.extend((0..direct.parts.len()).map(part));
+        self.add_to_assemblies(motions);
+        self.look_at_the_end();
     }
 
     /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.

@@ -299,31 +299,27 @@ impl Effective {
         now.map_or(0.0, |now| now.compliance.free(point, &now.operators, y))
     }
 
-    /// Norm of the diagonal of the stiffness in A times `x`, N.
-    pub(super) fn stiffness_norm(
+    /// Squares of the diagonal of the stiffness in A times `x`, by unknown, N².
+    pub(super) fn stiffness_squares(
         &self,
-        system: &System,
-        maps: &Maps,
-        x: impl Iterator<Item = f64>,
-    ) -> f64 {
+        (system, maps): (&System, &Maps),
+        mut x: impl Iterator<Item = f64>,
+        mut add: impl FnMut(usize, f64),
+    ) {
         let Some(now) = self.now.as_ref() else {
-            return 0.0;
+            return;
         };
-        let mut x = x;
-        let mut square = 0.0;
         for (span, map) in maps.spans() {
             let own = x.by_ref().take(span.len());
             if map.force.x == 0.0 {
                 own.for_each(drop);
                 continue;
             }
-            let of = |(i, x): (usize, f64)| {
+            for (i, x) in span.zip(own) {
                 let stiffness = now.diagonal[i] - map.inertia.x * system.mass.lumped[i];
-                (stiffness * x).powi(2)
-            };
-            square += span.zip(own).map(of).sum::<f64>() / (map.force.x * map.force.x);
+                add(i, (stiffness * x / map.force.x).powi(2));
+            }
         }
-        square.sqrt()
     }
 
     /// Sizes and uses of the factors at hand.

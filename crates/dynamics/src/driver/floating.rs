@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use carom_contact::Target;
 
-use super::joined::Joined;
+use super::joined::{Group, Joined};
 use super::pieces::{Piece, Pieces};
 use crate::error::Error;
 use crate::system::System;
@@ -58,11 +58,16 @@ impl Floating {
                 false => Vec::new(),
             };
             if against.len() > free.len() {
-                let mut alone = against.iter();
-                if let Some((group, motion)) =
-                    alone.find(|(group, _)| !touches(system, &group.nodes))
-                {
-                    return Err(free_motion(system, &group.nodes, motion));
+                let alone = |group: &Group| !touches(system, &group.nodes);
+                let mut motions = apart.motions(alone).into_iter();
+                if let Some(groups) = motions.find(|all| all.iter().all(|&group| alone(group))) {
+                    let is_moved =
+                        |group: &&Group| groups.iter().any(|moved| std::ptr::eq(*moved, *group));
+                    let mut named = against.iter();
+                    let named = named.find(|(group, _)| is_moved(group)).or(against.first());
+                    if let Some((group, motion)) = named {
+                        return Err(free_motion(system, &group.nodes, motion));
+                    }
                 }
                 pieces.extend(apart.loose().map(|group| group.nodes.clone()));
                 continue;

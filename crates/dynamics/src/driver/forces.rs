@@ -106,6 +106,7 @@ impl Driver {
                 }
             }
         }
+        self.add_bolts(time);
     }
 
     /// Forces of dashpots and of Rayleigh's damping at the velocity of the iteration, N.

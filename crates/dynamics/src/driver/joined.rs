@@ -48,11 +48,8 @@ impl<'a> Joined<'a> {
         let inside = |node: u32| part.contains(&system.unknowns.first(node));
         Joined::new(system, part, |leaders| {
             for body in &system.bodies {
-                if body.as_discrete().is_some() {
-                    continue;
-                }
                 let mut own = false;
-                body.each_element(&mut |nodes| {
+                body.each_joining_element(&mut |nodes| {
                     own |= inside(nodes[0]);
                     for &node in nodes.iter().filter(|_| own) {
                         unite(leaders, [nodes[0], node].map(|n| n as usize - first));
@@ -162,6 +159,28 @@ impl<'a> Joined<'a> {
         free.into_iter()
             .map(|(_, group, motion)| (group, motion))
             .collect()
+    }
+
+    /// Independent motions that nothing holds, each as the groups that it moves: what constraints and tightened bolts join to a group moves
+    /// with it. Of those that begin with a group that is `asked` for.
+    pub(super) fn motions(&self, asked: impl Fn(&Group) -> bool) -> Vec<Vec<&Group>> {
+        let (held, count) = (self.held(), self.modes.len());
+        let mut motions = Vec::new();
+        for (g, group) in self.groups.iter().enumerate() {
+            let own = self.modes.iter().enumerate();
+            let mut own =
+                own.filter(|(k, mode)| held.of[g * count + k].is_none() && self.moves(group, mode));
+            let Some(first) = own.next().filter(|_| asked(group)) else {
+                continue;
+            };
+            for (k, _) in std::iter::once(first).chain(own) {
+                let mut moved: Vec<usize> = held.motion(g * count + k).collect();
+                moved.iter_mut().for_each(|column| *column /= count);
+                moved.dedup();
+                motions.push(moved.into_iter().map(|g| &self.groups[g]).collect());
+            }
+        }
+        motions
     }
 
     /// Whether a motion moves any unknown of a group: a single node without rotations has no turn.
@@ -278,6 +297,21 @@ impl Echelon {
         self.of[pivot] = Some(self.rows.len());
         self.rows.push((pivot, row));
         true
+    }
+
+    /// The columns that are not zero where one that is no pivot is 1, and the others of these are 0; ascending.
+    fn motion(&self, free: usize) -> impl Iterator<Item = usize> {
+        let mut x = BTreeMap::from([(free, 1.0)]);
+        // a row knows no pivots of those before it
+        for (pivot, row) in self.rows.iter().rev() {
+            let others = row.iter().filter(|(column, _)| *column != pivot);
+            let terms = others.filter_map(|(column, v)| Some(v * x.get(column)?));
+            let value: f64 = -terms.sum::<f64>();
+            if value.abs() > INDEPENDENT {
+                x.insert(*pivot, value);
+            }
+        }
+        x.into_keys()
     }
 
     /// Whether a column is zero in all that the rows leave.

@@ -59,7 +59,7 @@ impl Driver {
             return Ok(());
         }
         let begin = Instant::now();
-        self.pace.rounding = None;
+        self.pace.is_sized = false;
         let system = Arc::clone(&self.system);
         let motion = &self.state.motion;
         self.maps.whole(

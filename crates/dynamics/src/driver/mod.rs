@@ -18,8 +18,11 @@ mod apart;
 mod approach;
 mod attempt;
 mod balance;
+mod bolts;
 mod candidates;
 mod carried;
+mod closing;
+mod closings;
 mod compressed;
 mod contacts;
 mod deletion;
@@ -59,6 +62,8 @@ mod pieces;
 mod predictor;
 mod projection;
 mod ranked;
+mod rebound;
+mod rebounding;
 pub(crate) mod record;
 mod refine;
 mod refined;
@@ -106,6 +111,7 @@ use crate::system::{LinkRow, Maps, System};
 use crate::watch::Watch;
 use active::Active;
 use carried::Carried;
+use closings::Closings;
 use effective::Effective;
 use far::Far;
 use floating::Floating;
@@ -116,6 +122,7 @@ use mixing::Mixing;
 use paired::Manner;
 use passage::Passage;
 pub use ranked::RankShare;
+use rebound::Rebound;
 use refined::Refined;
 use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use supports::Jump;
@@ -182,6 +189,8 @@ pub struct Driver {
     active: Active,
     passage: Passage,
     far: Far,
+    closings: Closings,
+    rebound: Rebound,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
     candidate_data: Vec<Candidate>,
@@ -220,6 +229,8 @@ pub struct Driver {
     reactions: Vec<Resultant>,
     vectors: Vectors,
     works: Works,
+    /// Sizes of the forces of each assembly.
+    squares: Vec<residual::Squares>,
     /// Energies of the iteration.
     stored: Stored,
     /// Forces of links in the step, N; empty without links.
@@ -332,7 +343,7 @@ impl Driver {
         let law = self.law(&self.system.contacts[number]);
         match law.get().level() {
             _ if self.between() => 0.5 * self.dt,
-            Level::Rate => law.get().capture() * self.dt,
+            Level::Rate => self.captured(number) * self.dt,
             Level::Gap => self.dt,
             Level::GapAndRate => self.map_of(number).instant(self.dt),
         }

@@ -18,6 +18,7 @@ use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::shared::{Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive};
+use crate::small::is_due;
 use crate::state::State;
 use crate::system::{Model, System};
 use crate::update::Sums;
@@ -351,20 +352,21 @@ impl Driver {
             return;
         };
         let (system, dim) = (Arc::clone(&self.system), self.system.dim);
-        let (step, records) = (self.state.step, &self.state.records);
-        let is_due = shared.is_first()
-            && step > self.looked
-            && records
-                .small
-                .is_due(step, (&self.state.ledger, self.state.assemblies.largest));
+        let step = self.state.step;
+        let asks = shared.is_first() && step > self.looked;
+        let is_due = |assembly: usize| asks && is_due(&self.state, step, assembly);
+        let due: Vec<bool> = (0..system.assemblies.all.len()).map(is_due).collect();
         self.looked = step;
-        let looks_before = records.small.looks;
-        let mut said = [
-            f64::from(scope as u8),
-            f64::from(is_due),
-            looks_before as f64,
-        ]
-        .to_vec();
+        // the numbers of the looks at each body, zero where there is none: assemblies of a rank are of its part of the model
+        let look = |body: usize| {
+            let assembly = system.assemblies.of_part[system.part_of_body[body]];
+            match due[assembly] {
+                true => (self.state.records.small.looked[assembly].looks + 1) as f64,
+                false => 0.0,
+            }
+        };
+        let mut said = vec![f64::from(scope as u8), f64::from(due.contains(&true))];
+        said.extend((0..system.bodies.len()).map(look));
         shared.ranks.broadcast(&mut said);
         let (scope, is_due) = (Scope::of(said[0]), said[1] != 0.0);
         shared.bring(dim, scope, &mut self.state);
@@ -375,7 +377,7 @@ impl Driver {
         if is_due {
             shared.bring_contacts(dim, &mut self.state);
             let u = &self.state.motion.u;
-            let found = shared.distortions(u, said[2] as usize + 1);
+            let found = shared.distortions(u, &said[2..]);
             let bending = shared.bending(u);
             if shared.is_first() {
                 let of = |body: usize, _: (&[f64], usize), _: &Distortion| OfBody {
@@ -384,7 +386,8 @@ impl Driver {
                     // springs are not shared
                     across: None,
                 };
-                self.watch.look(&system, &of, &mut self.state);
+                let state = &mut self.state;
+                self.watch.look((&system, &due), &of, state);
             }
         }
         self.shared = Some(shared);
@@ -427,15 +430,15 @@ impl Shared {
         bending.collect()
     }
 
-    /// Rotation and strain of the elements of each body at the displacement `u`, the largest of all ranks; none at finite strain. `looks`: which
-    /// point of each element is looked at.
-    fn distortions(&self, u: &[f64], looks: usize) -> Vec<Option<Distortion>> {
+    /// Rotation and strain of the elements of each body at the displacement `u`, the largest of all ranks; none at finite strain. `looks`: by body,
+    /// which point of each element is looked at.
+    fn distortions(&self, u: &[f64], looks: &[f64]) -> Vec<Option<Distortion>> {
         let none = Distortion::default();
         let of_body = |(body, shares): (usize, &[Share; 2])| {
             let mut found = [[0.0; 2]; 2];
             let mut small = false;
             for share in shares {
-                let Some(own) = share.solid().distortion(u, looks, &none) else {
+                let Some(own) = share.solid().distortion(u, looks[body] as usize, &none) else {
                     continue;
                 };
                 small = true;

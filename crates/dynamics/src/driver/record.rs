@@ -5,7 +5,7 @@ use std::sync::Arc;
 use carom_contact::Rows;
 
 use super::Driver;
-use crate::assembly_energy::PartMotion;
+use crate::assembly_energy::{PartMotion, balance_taken};
 use crate::exchange::sum;
 use crate::moment::moment;
 use crate::of_contact::OfContact;
@@ -30,15 +30,17 @@ impl Driver {
             self.next.exchange.close(&system, momenta, records);
             self.balance_assemblies();
         }
+        self.look_at_the_end();
     }
 
     /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
     fn balance_assemblies(&mut self) {
         self.work_of_obstacles();
         let inertia = self.inertia_of_identity();
-        let system = &*self.system;
+        let system = Arc::clone(&self.system);
+        let system = &*system;
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let (vectors, works) = (&mut self.vectors, &self.works);
+        let (vectors, given) = (&mut self.vectors, &self.works.given);
         if inertia != 0.0 {
             system.mass.multiply(&new.a, &mut vectors.half);
         }
@@ -57,13 +59,27 @@ impl Driver {
             if inertia != 0.0 {
                 motion.of_scheme = inertia * sum(&|i| vectors.half[i] * new.a[i]);
             }
-            motion.given = works.given.get(number).copied().unwrap_or(0.0);
+            motion.given = given.get(number).copied().unwrap_or(0.0);
             motion
         };
+        let motions: &mut Vec<PartMotion> = &mut self.works.motions;
+        motions.clear();
+        motions.extend((0..system.parts.len()).map(part));
+        let motions = std::mem::take(motions);
+        self.add_to_assemblies(motions);
+    }
+
+    /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part.
+    pub(super) fn add_to_assemblies(&mut self, mut motions: Vec<PartMotion>) {
+        let internal = |state: &State| state.ledger.balance.internal();
+        if self.system.is_nonlinear() {
+            balance_taken(&mut motions, internal(&self.next) - internal(&self.state));
+        }
         let assemblies = &mut self.next.assemblies;
         assemblies.follow(&self.state.assemblies);
-        let contacts = (&self.next.records.contacts[..], &works.obstacles[..]);
-        assemblies.add(system, part, contacts);
+        let records = &self.next.records.contacts[..];
+        assemblies.add(&self.system, &motions, (records, &self.works.obstacles));
+        self.works.motions = motions;
     }
 
     /// What the points of the contacts did in the step: those that this process has.
@@ -158,12 +174,14 @@ impl Driver {
             records.contacts[k].pushed = of.pushed;
             self.report.contacts[k].clone_from(&of.report);
         }
-        if self.is_shared() {
-            // they look once the step is taken, together
-            return;
+    }
+
+    /// Looks at the end of the step, whose energies are known; ranks look once the step is taken, together.
+    pub(super) fn look_at_the_end(&mut self) {
+        if !self.is_shared() {
+            let (system, step) = (Arc::clone(&self.system), self.state.step + 1);
+            self.watch.look_alone(&system, step, &mut self.next);
         }
-        let state = &mut self.next;
-        self.watch.look_alone(&system, self.state.step + 1, state);
     }
 
     /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
@@ -252,10 +270,14 @@ impl Driver {
         }
     }
 
-    /// How the forces of a contact change the momentum.
+    /// How the forces of a contact change the momentum; of a static step, which changes none, how they count in its works, as all forces
+    /// do there.
     fn contact_impulse(&self, contact: usize) -> Impulse {
         match self.maps.is_static() {
-            true => Impulse::weights(0.0, 1.0),
+            true => {
+                let [old, new] = self.weights_of(self.system.zone_of(contact));
+                Impulse::weights(old, new)
+            }
             false => self.map_of(contact).contact_impulse,
         }
     }

@@ -104,7 +104,8 @@ impl Matrices {
             }
             let free = self.free[k].matrix_mut();
             let of = (&group.parts[..], &fixed[..]);
-            add_proximal((at.proximal, &self.diagonal[..]), of, free);
+            let without = stiffest_bolt(system);
+            add_proximal((at.proximal, &self.diagonal[..]), of, without, free);
             let all = system.unknowns.node_of_each();
             let unknowns = group.parts.iter().cloned().flatten();
             let nodes: Vec<u32> = unknowns.map(|unknown| all[unknown]).collect();
@@ -322,15 +323,16 @@ impl Matrices {
 }
 
 /// Adds the proximal term of the pieces to the matrix of a group, `free`, from the diagonal of all unknowns. What has no stiffness of its own, as a
-/// point mass, has that of the stiffest unknown.
+/// point mass, has that of the stiffest unknown; where none has any, `without` (N/m).
 fn add_proximal(
     ((pieces, weight), diagonal): ((Option<&Pieces>, f64), &[f64]),
     (parts, fixed): (&[Range<usize>], &[bool]),
+    without: f64,
     free: &mut Csr,
 ) {
     let Some(pieces) = pieces else { return };
     let stiffest = diagonal.iter().fold(0.0_f64, |most, k| most.max(k.abs()));
-    let stiffest = if stiffest > 0.0 { stiffest } else { 1.0 };
+    let stiffest = if stiffest > 0.0 { stiffest } else { without };
     let unknowns = parts.iter().cloned().flatten().enumerate();
     for (place, unknown) in unknowns.filter(|(place, _)| !fixed[*place]) {
         if pieces.of(unknown).is_some() {
@@ -339,6 +341,13 @@ fn add_proximal(
             free.add(place, place, weight * scale);
         }
     }
+}
+
+/// Stiffness of the stiffest bolt that is tightened, N/m: what holds a model without any other; 1 without bolts.
+fn stiffest_bolt(system: &System) -> f64 {
+    let bolts = system.bodies.iter().flat_map(|body| body.bolts());
+    let stiffness = bolts.map(|bolt| bolt.stiffness).reduce(f64::max);
+    stiffness.unwrap_or(1.0)
 }
 
 /// Counts the work with a factor that is dropped.

@@ -2,14 +2,15 @@
 
 use carom_algebra::reduce::norm_squared;
 use carom_algebra::unknowns::Kind;
-use carom_bodies::{Body, Reduced};
+use carom_bodies::Body;
 use carom_mesh::ElementId;
 
 use super::loads::damping_rate;
 use super::{Driver, Which};
 use crate::error::{Error, MeshNode};
 
-/// Where an iteration stands.
+/// Where an iteration stands. Forces are told by assembly: the imbalance and its rounding are those of the one that is worst.
+#[derive(Default)]
 pub(super) struct Standing {
     /// Imbalance of the forces, relative.
     pub(super) imbalance: f64,
@@ -19,6 +20,32 @@ pub(super) struct Standing {
     pub(super) rounding: f64,
     /// Largest of the forces that balance, N.
     pub(super) scale: f64,
+    /// Imbalance of the forces of all, N.
+    pub(super) force: f64,
+    /// Whether no assembly has more imbalance than is tolerated.
+    pub(super) is_tolerable: bool,
+    /// Whether none has more than that or than may be rounding.
+    pub(super) is_rounding: bool,
+}
+
+/// Squares of norms of the forces of an assembly, N².
+#[derive(Clone, Copy, Default)]
+pub(super) struct Squares {
+    imbalance: f64,
+    /// Of contacts, loads, internal and inertia forces, links.
+    forces: [f64; 5],
+    /// Of the momentum at the start of the step, per step.
+    momentum: f64,
+    /// What rounding of places leaves of forces.
+    rounding: f64,
+}
+
+impl Squares {
+    /// Largest norm of the forces that balance, N.
+    fn scale(&self) -> f64 {
+        let largest = self.forces.into_iter().fold(self.momentum, f64::max);
+        largest.sqrt().max(f64::MIN_POSITIVE)
+    }
 }
 
 impl Driver {
@@ -99,78 +126,129 @@ impl Driver {
         }
     }
 
-    /// How far forces and contacts are from what they must be. Forces are compared with the largest of those that balance,
-    /// and with the momentum per step.
+    /// How far forces and contacts are from what they must be. The forces of an assembly, whose bodies may act on each other, are compared with
+    /// the largest of those that balance in it, and with its momentum per step: bodies that have nothing to do with it do not make its
+    /// equations less accurate.
     pub(super) fn standing(&mut self) -> Standing {
         self.spread();
+        let mut squares = std::mem::take(&mut self.squares);
+        self.square_forces(&mut squares);
+        let tolerance = self.system.nonlinear.iteration.tolerance;
+        let mut standing = Standing {
+            is_tolerable: true,
+            is_rounding: true,
+            ..Standing::default()
+        };
+        let (mut left_over, mut force) = (0.0, 0.0);
+        for own in &squares {
+            let scale = own.scale();
+            let [imbalance, rounding] =
+                [own.imbalance, own.rounding].map(|square| square.sqrt() / scale);
+            standing.is_tolerable &= imbalance <= tolerance;
+            standing.is_rounding &= imbalance <= tolerance.max(rounding);
+            left_over += (scale * tolerance.max(rounding)).powi(2);
+            force += own.imbalance;
+            standing.scale = standing.scale.max(scale);
+            // what is no number is the worst
+            if imbalance.is_nan() || imbalance >= standing.imbalance {
+                (standing.imbalance, standing.rounding) = (imbalance, rounding);
+            }
+        }
+        self.squares = squares;
+        self.left_over = left_over.sqrt();
+        standing.force = force.sqrt();
+        let of_points = self.worst_point().map_or(0.0, |(_, defect)| defect);
+        standing.defect = of_points.max(self.worst_row());
+        standing
+    }
+
+    /// Norm of the largest of the forces that balance in each assembly, N.
+    pub(super) fn scale_of_forces(&mut self) -> f64 {
+        let mut squares = std::mem::take(&mut self.squares);
+        self.square_forces(&mut squares);
+        let scale = squares.iter().map(|own| own.scale().powi(2)).sum::<f64>();
+        self.squares = squares;
+        scale.sqrt()
+    }
+
+    /// Squares of the forces of each assembly.
+    fn square_forces(&mut self, squares: &mut Vec<Squares>) {
+        if !std::mem::replace(&mut self.pace.is_sized, true) {
+            self.size_of_motion(squares);
+        }
         let factor = self.maps.contact();
-        let vectors = &self.vectors;
-        let mut imbalance = 0.0;
-        for (i, (r, c)) in vectors.residual.iter().zip(&vectors.contact).enumerate() {
-            if !self.system.fixed[i] {
-                imbalance += (r + factor * c).powi(2);
-            }
+        let (system, vectors) = (&*self.system, &self.vectors);
+        for own in squares.iter_mut() {
+            (own.imbalance, own.forces) = (0.0, [0.0; 5]);
         }
-        let scale = self.scale_of_forces();
-        let rounding = match self.pace.rounding {
-            Some(rounding) => rounding,
-            None => {
-                let rounding = self.rounding();
-                *self.pace.rounding.insert(rounding)
+        for (part, unknowns) in system.parts.iter().enumerate() {
+            let own = &mut squares[system.assemblies.of_part[part]];
+            for i in unknowns.clone() {
+                let contact = factor * vectors.contact[i];
+                if !system.fixed[i] {
+                    own.imbalance += (vectors.residual[i] + contact).powi(2);
+                }
+                let forces = [
+                    contact,
+                    vectors.load[i],
+                    vectors.internal[i],
+                    vectors.inertia[i],
+                ];
+                for (sum, force) in own.forces.iter_mut().zip(forces) {
+                    *sum += force * force;
+                }
             }
-        };
-        let [imbalance, rounding] = [imbalance.sqrt(), rounding].map(|force| force / scale);
-        self.left_over = scale * f64::max(self.system.nonlinear.iteration.tolerance, rounding);
-        Standing {
-            imbalance,
-            rounding,
-            defect: self
-                .worst_point()
-                .map_or(0.0, |(_, defect)| defect)
-                .max(self.worst_row()),
-            scale,
+            if let Some(link) = self.link_force.get(unknowns.clone()) {
+                own.forces[4] += norm_squared(link);
+            }
         }
     }
 
-    /// Largest norm of the forces that balance, N.
-    pub(super) fn scale_of_forces(&self) -> f64 {
-        let vectors = &self.vectors;
-        let norm = |f: &[f64]| norm_squared(f).sqrt();
-        let contact = self.maps.contact().abs() * norm(&vectors.contact);
-        let forces = [
-            &vectors.load,
-            &self.link_force,
-            &vectors.internal,
-            &vectors.inertia,
-        ];
-        let scale = forces.iter().fold(contact, |most, f| most.max(norm(f)));
-        let momentum = match self.maps.is_static() {
-            true => 0.0,
-            false => self.momentum_scale(),
+    /// Squares of what the motion at the start of the step says: of the momentum per step, and of what rounding leaves of forces.
+    fn size_of_motion(&mut self, squares: &mut Vec<Squares>) {
+        let system = &*self.system;
+        let count = system.assemblies.all.len();
+        squares.clear();
+        squares.resize(count, Squares::default());
+        if !self.maps.is_static() {
+            let add = |part: usize, square: f64| {
+                squares[system.assemblies.of_part[part]].momentum += square / self.dt.powi(2);
+            };
+            self.squares_of_momentum(add);
+        }
+        let add = |unknown: usize, square: f64| {
+            let assembly = system.assemblies.of_part[system.part_of(unknown)];
+            squares[assembly].rounding += (2.0 * f64::EPSILON).powi(2) * square;
         };
-        scale.max(momentum).max(f64::MIN_POSITIVE)
+        self.squares_of_places(1.0, add);
     }
 
-    /// |M v|/dt of the motion at the start of the step, N.
-    fn momentum_scale(&self) -> f64 {
-        let masses = self.system.body_masses.iter().flatten();
-        let unknowns = &self.system.unknowns;
-        let squares = masses.map(|&(node, m)| {
-            let v = &self.state.motion.v[unknowns.translations_of(node)];
-            m * m * v.iter().map(|v| v * v).sum::<f64>()
-        });
-        let turning = unknowns.turning().iter();
-        let spins = turning.flat_map(|&node| unknowns.rotations_of(node));
-        let spins = spins.map(|unknown| {
-            (self.system.mass.lumped[unknown] * self.state.motion.v[unknown]).powi(2)
-        });
-        let reduced = self.system.bodies.iter().filter_map(Body::as_reduced);
-        let of_axis = |body: &Reduced, axis: usize| {
-            let terms = body.inertia(axis);
-            terms.map(|(i, m)| m * self.state.motion.v[i]).sum::<f64>()
-        };
-        let reduced = reduced.flat_map(|body| [0, 1, 2].map(|axis| of_axis(body, axis).powi(2)));
-        (squares.sum::<f64>() + spins.sum::<f64>() + reduced.sum::<f64>()).sqrt() / self.dt
+    /// Squares of M v of the motion at the start of the step, by connected part, N² s².
+    fn squares_of_momentum(&self, mut add: impl FnMut(usize, f64)) {
+        let (system, v) = (&*self.system, &self.state.motion.v);
+        let unknowns = &system.unknowns;
+        for (body, masses) in system.body_masses.iter().enumerate() {
+            let of = |&(node, m): &(u32, f64)| {
+                let v = &v[unknowns.translations_of(node)];
+                m * m * v.iter().map(|v| v * v).sum::<f64>()
+            };
+            add(system.part_of_body[body], masses.iter().map(of).sum());
+        }
+        for &node in unknowns.turning() {
+            for unknown in unknowns.rotations_of(node) {
+                let spin = system.mass.lumped[unknown] * v[unknown];
+                add(system.part_of(unknown), spin * spin);
+            }
+        }
+        for (body, part) in system.bodies.iter().zip(&system.part_of_body) {
+            let Some(body) = body.as_reduced() else {
+                continue;
+            };
+            for axis in 0..3 {
+                let momentum = body.inertia(axis).map(|(i, m)| m * v[i]).sum::<f64>();
+                add(*part, momentum * momentum);
+            }
+        }
     }
 
     /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
@@ -193,6 +271,13 @@ impl Driver {
 
     /// `places`: factor of the distances from the origin.
     fn rounding_with(&self, places: f64) -> f64 {
+        let mut sum = 0.0;
+        self.squares_of_places(places, |_, square| sum += square);
+        2.0 * f64::EPSILON * sum.sqrt()
+    }
+
+    /// Squares of the stiffness of each unknown times its place, N². `places`: factor of the distances from the origin.
+    fn squares_of_places(&self, places: f64, add: impl FnMut(usize, f64)) {
         let (system, u) = (&self.system, &self.state.motion.u);
         let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
             Kind::Translation(axis) => {
@@ -201,10 +286,8 @@ impl Driver {
             }
             Kind::Rotation(_) | Kind::Amplitude(_) => u[unknown].abs(),
         });
-        2.0 * f64::EPSILON
-            * self
-                .effective
-                .stiffness_norm(&self.system, &self.maps, sizes)
+        self.effective
+            .stiffness_squares((system, &self.maps), sizes, add);
     }
 
     pub(super) fn no_equilibrium(&self, passes: usize) -> Error {

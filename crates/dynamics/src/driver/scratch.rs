@@ -1,5 +1,6 @@
 //! What stages of a step leave for the stages after them: scratch, which no step needs from the one before.
 
+use crate::assembly_energy::PartMotion;
 use crate::system::{Motion, System};
 
 /// System vectors of the iterations.
@@ -122,6 +123,8 @@ pub(super) struct Works {
     pub(super) given: Vec<f64>,
     /// Work in the step of the obstacle of each contact, J.
     pub(super) obstacles: Vec<f64>,
+    /// Connected parts at the end of the step.
+    pub(super) motions: Vec<PartMotion>,
 }
 
 impl Works {
@@ -169,8 +172,8 @@ pub(super) struct Pace {
     pub(super) made: usize,
     /// Contraction with a factor made within the iterations of a step, between two states; zero while unknown.
     pub(super) fresh: f64,
-    /// [`Driver::rounding`](super::Driver::rounding) with the matrix at hand; none before it is asked for.
-    pub(super) rounding: Option<f64>,
+    /// Whether the scales of the forces have the motion at the start of the attempt, and the matrix at hand.
+    pub(super) is_sized: bool,
 }
 
 /// Points and forces of the stage.

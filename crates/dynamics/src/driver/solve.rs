@@ -129,14 +129,14 @@ impl Driver {
         if self.is_solved(&standing, before) {
             return self.check_held(limit);
         }
-        Err(self.unbalanced(limit, standing.imbalance * standing.scale))
+        Err(self.unbalanced(limit, standing.force))
     }
 
     /// First guess, residual and pairing of the attempt.
     pub(super) fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
         self.residuals.clear();
         (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
-        self.pace.rounding = None;
+        self.pace.is_sized = false;
         self.floating.begin();
         self.mixing.clear();
         self.take_matrices()?;
@@ -157,11 +157,13 @@ impl Driver {
         self.vectors.ahead.clear();
         self.search.iter_mut().for_each(Search::begin_step);
         self.begin_far();
+        self.forget_closings();
         self.pair(true);
         if (0..self.system.contacts.len()).any(|k| self.looks_ahead(k)) {
             self.look_ahead()?;
             self.pair(true);
         }
+        self.find_closings();
         Ok(())
     }
 
@@ -176,7 +178,7 @@ impl Driver {
         self.move_links(1.0);
         self.spread();
         self.left_over = match self.system.is_nonlinear() {
-            true => self.system.nonlinear.iteration.tolerance * self.scale_of_forces(),
+            true => self.scale_of_forces() * self.system.nonlinear.iteration.tolerance,
             false => 0.0,
         };
         Ok(())
@@ -186,18 +188,11 @@ impl Driver {
     /// gain no more, not where they get there: what is left would be of one sign step after step, and add up. Not so under the
     /// forces of links, whose passes need answers that are smooth in them.
     fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
-        let Standing {
-            imbalance,
-            rounding,
-            defect,
-            ..
-        } = *standing;
-        let gains = before.is_none_or(|before| imbalance < GAIN * before);
+        let gains = before.is_none_or(|before| standing.imbalance < GAIN * before);
         let gains = gains && self.link_force.is_empty();
-        let tolerance = self.system.nonlinear.iteration.tolerance;
         // the last iteration of those that converge quadratically is long: points that stick would slip by its square
         let most = if self.refines() { WITHIN } else { 1.0 };
-        (imbalance <= tolerance || imbalance <= rounding && !gains) && defect <= most
+        (standing.is_tolerable || standing.is_rounding && !gains) && standing.defect <= most
     }
 
     /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in

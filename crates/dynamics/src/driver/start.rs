@@ -9,6 +9,7 @@ use carom_contact::{Contact, Pairing, Search};
 
 use super::active::Active;
 use super::carried::Carried;
+use super::closings::Closings;
 use super::effective::Effective;
 use super::far::Far;
 use super::floating::Floating;
@@ -20,6 +21,7 @@ use super::linking::Multipliers;
 use super::mixing::Mixing;
 use super::paired::sums_compliances;
 use super::passage::Passage;
+use super::rebound::Rebound;
 use super::record::motion_of;
 use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
@@ -116,6 +118,8 @@ impl Driver {
             active: Active::of(&system),
             passage: Passage::of(&system),
             far: Far::of(&system, |_| true),
+            closings: Closings::of(&system),
+            rebound: Rebound::of(&system),
             candidates: Vec::new(),
             candidate_data: Vec::new(),
             free_gaps: Vec::new(),
@@ -148,6 +152,7 @@ impl Driver {
                 ..Vectors::default()
             },
             works: Works::default(),
+            squares: Vec::new(),
             rows_stand: false,
             next: state_without_motion(&system),
             state: state_without_motion(&system),
@@ -323,6 +328,7 @@ impl Driver {
             }
         };
         self.state.assemblies = AssemblyEnergies::start(system, part);
+        self.state.records.small.begin_dynamics();
     }
 
     /// Keeps what direct steps need of the start: loads that vary, and forces beside the internal ones.

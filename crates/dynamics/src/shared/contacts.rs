@@ -304,6 +304,7 @@ pub(super) fn of_point(
         watched,
         flight,
         crush,
+        landed,
     } = &mut state.interface;
     let mut slid = friction.get(point).copied().unwrap_or_default();
     let mut number = number_of(status[point]);
@@ -332,6 +333,7 @@ pub(super) fn of_point(
         &mut opening[point],
         &mut flight[point],
         &mut crush[point],
+        &mut landed[point],
         &mut state.records.opened[point],
         &mut is_watched,
         &mut waits,

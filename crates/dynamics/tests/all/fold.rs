@@ -30,6 +30,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             releases: Vec::new(),
             plies: Vec::new(),
             nodal_thickness: None,
+            tightened: Vec::new(),
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],

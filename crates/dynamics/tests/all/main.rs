@@ -38,6 +38,7 @@ mod solvers;
 mod stability;
 mod stops;
 mod supports;
+mod thrown;
 mod trough;
 
 #[global_allocator]

@@ -1,4 +1,4 @@
-//! What bodies, supports and springs had to bear, against what the case allows.
+//! What bodies, supports, springs and bolts had to bear, against what the case allows.
 
 use crate::results::Results;
 use crate::results::settings::{AllowableSettings, Bearer};
@@ -37,6 +37,18 @@ fn check(results: &Results, stills: &[&Still], allowed: &AllowableSettings) -> C
         Bearer::SpringStroke(name) => {
             let found = all.get(name).map(|spring| [spring.extent, spring.time]);
             ("stroke", "spring", name.clone(), "m", found)
+        }
+        Bearer::Bolts(name, bolts) => {
+            let stage = results.system.nonlinear.preload;
+            let end = stage.map_or(0.0, |stage| stage.end);
+            let all = results.bolts.all(&results.system);
+            let all = bolts.iter().filter_map(|bolt| all.get(bolt));
+            let forces = all.flat_map(|bolt| {
+                let begin = bolt.end_of_stage.map(|force| [force, end]);
+                bolt.largest.into_iter().chain(begin)
+            });
+            let found = forces.reduce(|most, other| if other[0] > most[0] { other } else { most });
+            ("force", "pretension", name.clone(), "N", found)
         }
     };
     let governing = found.map(|[value, time]| (value, (name.clone(), time)));

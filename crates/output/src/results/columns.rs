@@ -112,7 +112,7 @@ pub(crate) fn columns(
             "dashpot" => ("rate", "m/s"),
             _ => ("elongation", "m"),
         };
-        for direction in 0..discrete.directions() {
+        for direction in 0..discrete.told_directions() {
             for (what, unit) in [("force", "N"), extent] {
                 let what = match discrete.directions() {
                     1 => what.to_owned(),
@@ -121,6 +121,9 @@ pub(crate) fn columns(
                 names.push(column(&[kind, name, &what], unit));
             }
         }
+    }
+    for bolt in system.bodies.iter().flat_map(|body| body.bolts()) {
+        names.push(column(&["pretension", &bolt.name, "force"], "N"));
     }
     for probe in &settings.probes {
         for ((motion, unit), _) in MOTIONS.iter().zip(probe.recorded()).filter(|(_, on)| *on) {

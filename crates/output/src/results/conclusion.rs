@@ -129,6 +129,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
     let momentum = momentum(system, last, zones.is_some());
     let comparison = results.comparison.as_ref();
     let exact = comparison.map(|comparison| against_exact(results, comparison));
+    let pretensions = results.bolts.all(system);
     let evidence = Evidence {
         system,
         last,
@@ -137,6 +138,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         energy: &energy,
         momentum: &momentum,
         exact: exact.as_ref(),
+        bolts: &pretensions,
         doubts: &settings.doubts,
         iterated: ending.costs.work.products > 0,
         study: settings.study.as_deref(),
@@ -161,6 +163,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         contacts: contacts::contacts(results),
         levels: contacts::levels(results),
         discrete: results.discrete.all(),
+        pretensions,
         loads: results.loads.all(system),
         maxima: largest::maxima(results),
         allowables: allowables::checks(results, &largest::stills(results)),

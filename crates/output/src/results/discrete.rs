@@ -17,7 +17,7 @@ impl DiscretePeaks {
     pub(crate) fn push(&mut self, system: &System, state: &State) {
         let motion = &state.motion;
         for element in system.bodies.iter().filter_map(|body| body.as_discrete()) {
-            for direction in 0..element.directions() {
+            for direction in 0..element.told_directions() {
                 let [force, extent] = element.response(direction, [&motion.u, &motion.v]);
                 if !self.peaks.contains_key(element.name()) {
                     let fresh = Discrete {

@@ -13,6 +13,7 @@ use carom_dynamics::{ContactReport, Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
 use crate::history::column;
+use crate::results::bolts;
 use crate::results::columns::{contact_columns, deletes, files, moments, turns};
 use crate::results::probed::Cells;
 use crate::results::sensor::{ContactPoint, Sensor};
@@ -141,10 +142,13 @@ impl Histories {
             }
         }
         for discrete in system.bodies.iter().filter_map(|body| body.as_discrete()) {
-            for direction in 0..discrete.directions() {
+            for direction in 0..discrete.told_directions() {
                 let response = discrete.response(direction, [&motion.u, &motion.v]);
                 row.extend(response.map(Cell::Number));
             }
+        }
+        for (bolt, kept) in bolts::each(system, state) {
+            row.push(Cell::Number(bolt.tension(&motion.u, kept)));
         }
         for (probe, sensors) in &self.probes {
             let recorded = Order::ALL.into_iter().zip(probe.recorded());

@@ -163,20 +163,22 @@ impl Impacts {
                 totals.preload = Some(contact.force);
             }
         }
-        let parts = report
-            .parts()
-            .filter(|_| report.step > system.static_steps());
-        for (time, dt, contacts) in parts {
+        // forces of static steps have a size, but no duration
+        let takes_time = report.step > system.static_steps();
+        for (time, dt, contacts) in report.parts().filter(|_| report.step > 0) {
             let moments = system.moments.iter().zip(contacts);
             for (totals, (about, contact)) in self.told.contacts.iter_mut().zip(moments) {
                 totals.follow_resultant(contact.resultant, time);
                 if let Some(about) = about {
                     totals.follow_moment(about.point, contact.moment, time);
                 }
+                totals.peak_friction = totals.peak_friction.max(contact.friction);
+                if !takes_time {
+                    continue;
+                }
                 if totals.window > 0.0 {
                     totals.mean.push(dt, contact.force);
                 }
-                totals.peak_friction = totals.peak_friction.max(contact.friction);
                 if contact.closed > 0 {
                     totals.closed += dt;
                 }

@@ -8,8 +8,8 @@ use serde::Deserialize;
 
 use super::due::Due;
 use super::{
-    Pieces, Results, columns, discrete, exact, fields, figures, histories, impacts, instants,
-    loads, page, stills, support_peaks, totals,
+    Pieces, Results, bolts, columns, discrete, exact, fields, figures, histories, impacts,
+    instants, loads, page, stills, support_peaks, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::{Settings, Tables};
@@ -22,14 +22,18 @@ struct Gathered(Files, Beside);
 /// Bytes of the list of files, histories, impacts, fields.
 type Files = (u64, histories::Kept, impacts::Kept, Option<fields::Sent>);
 
-/// Figures, kept instants, instants of largest forces, springs and dashpots with supports, loads, spectra, filtered accelerations, series and statuses
+/// Figures, kept instants, instants of largest forces, springs and dashpots with bolts and supports, loads, spectra, filtered accelerations, series and statuses
 /// of the page, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Beside(
     figures::Traces,
     stills::Kept,
     Vec<instants::Instant>,
-    (discrete::DiscretePeaks, support_peaks::SupportPeaks),
+    (
+        discrete::DiscretePeaks,
+        bolts::BoltForces,
+        support_peaks::SupportPeaks,
+    ),
     Vec<loads::LoadTotals>,
     Vec<Vec<Vec<[f64; 2]>>>,
     (Vec<f64>, Vec<Vec<f64>>),
@@ -122,7 +126,7 @@ impl Results {
             traces,
             kept,
             instants,
-            (_, supports),
+            (_, bolts, supports),
             loads,
             spectra,
             filtered,
@@ -135,6 +139,7 @@ impl Results {
         self.curves.takes(traces)
             && self.stills.takes(&self.system, kept)
             && self.instants.takes(&self.system, instants)
+            && bolts.is_of(&self.system)
             && supports.is_of(self.system.supports.len())
             && [0, self.system.nonlinear.load_names.len()].contains(&loads.len())
             && self.spectra.takes(spectra)
@@ -154,7 +159,7 @@ impl Results {
             traces,
             kept,
             instants,
-            (discrete, supports),
+            (discrete, bolts, supports),
             loads,
             spectra,
             filtered,
@@ -168,6 +173,7 @@ impl Results {
         self.stills.go_on(kept);
         self.instants.go_on(instants);
         self.discrete = discrete;
+        self.bolts = bolts;
         self.supports = supports;
         self.loads.totals = loads;
         self.spectra.go_on(spectra);
@@ -212,7 +218,7 @@ impl Results {
             self.curves.kept(),
             self.stills.settled(&self.system),
             self.instants.kept(),
-            (&self.discrete, &self.supports),
+            (&self.discrete, &self.bolts, &self.supports),
             &self.loads.totals,
             self.spectra.kept(),
             self.filtered.kept(),

@@ -9,6 +9,7 @@
 
 mod allowables;
 mod beams;
+mod bolts;
 mod cells;
 mod columns;
 mod conclusion;
@@ -55,6 +56,7 @@ use std::time::{Duration, Instant};
 use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System, Watched};
 
 use crate::{Error, Folder, atomic, checkpoint};
+use bolts::BoltForces;
 use discrete::DiscretePeaks;
 use due::Due;
 use exact::Comparison;
@@ -102,6 +104,7 @@ pub struct Results {
     raster: RasterOf,
     instants: Instants,
     discrete: DiscretePeaks,
+    bolts: BoltForces,
     supports: SupportPeaks,
     loads: Loads,
     spectra: Spectra,
@@ -204,6 +207,7 @@ impl Results {
             raster: RasterOf::new(&system, settings.end),
             instants: Instants::new(&system, &settings.levels),
             discrete: DiscretePeaks::default(),
+            bolts: BoltForces::default(),
             supports: SupportPeaks::default(),
             loads: Loads::default(),
             spectra,
@@ -250,6 +254,7 @@ impl Results {
             self.instants.push(&self.system, state, report);
         }
         self.discrete.push(&self.system, state);
+        self.bolts.push(&self.system, state);
         self.supports.push(report);
         self.spectra.push(&self.system, state, report);
         self.filtered.push(&self.system, state, report);

@@ -36,7 +36,7 @@ pub struct Settings {
     pub contact_filters: BTreeMap<String, Vec<u32>>,
     /// Contacts that are judged together.
     pub levels: Vec<LevelSettings>,
-    /// What bodies, supports and springs may bear.
+    /// What bodies, supports, springs and bolts may bear.
     pub allowables: Vec<AllowableSettings>,
     /// Time between two rows of `histories.csv`, s; `None`: a row for every step.
     pub history_every: Option<f64>,
@@ -105,6 +105,8 @@ pub enum Bearer {
     SpringForce(String),
     /// Elongation of the springs of a name.
     SpringStroke(String),
+    /// Force of each bolt whose name is one of these.
+    Bolts(String, Vec<String>),
 }
 
 /// A history of the mean motion of a group of nodes.

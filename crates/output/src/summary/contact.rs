@@ -1,4 +1,4 @@
-//! What the summary says of contacts, springs, dashpots and loads.
+//! What the summary says of contacts, springs, dashpots, bolts and loads.
 
 use serde::{Deserialize, Serialize};
 
@@ -103,6 +103,21 @@ pub struct Discrete {
     pub time: f64,
     /// Largest magnitude of the mean elongation (m) of springs, of its rate (m/s) of dashpots.
     pub extent: f64,
+}
+
+/// Forces of a bolt that the static stage tightens, at the ends of the steps, positive in tension.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pretension {
+    /// At the end of the static stage, N; `None` before it.
+    pub end_of_stage: Option<f64>,
+    /// Largest over the dynamics, N, and when, s; `None` without dynamics.
+    pub largest: Option<[f64; 2]>,
+    /// Smallest over the dynamics, N, and when, s.
+    pub smallest: Option<[f64; 2]>,
+    /// At the end of the run, N.
+    pub last: Option<f64>,
+    /// Part of the preload that is lost at the end of the run: 1 - `last`/`end_of_stage`.
+    pub loss: Option<f64>,
 }
 
 /// Total force of a load on a surface or at nodes.

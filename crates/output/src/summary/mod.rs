@@ -16,7 +16,7 @@ use crate::statistics::{Check, Level};
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
 
-pub use contact::{Contact, Discrete, Friction, Load, PeakMoment, PeakResultant};
+pub use contact::{Contact, Discrete, Friction, Load, PeakMoment, PeakResultant, Pretension};
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,13 +46,16 @@ pub struct Summary {
     /// One entry per spring and dashpot, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub discrete: BTreeMap<String, Discrete>,
+    /// One entry per bolt that the static stage tightens, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub pretensions: BTreeMap<String, Pretension>,
     /// One entry per load on a surface or at nodes, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub loads: BTreeMap<String, Load>,
     /// Largest values of the fields.
     #[serde(default)]
     pub maxima: Maxima,
-    /// What bodies, supports and springs had to bear, where the case says what they may.
+    /// What bodies, supports, springs and bolts had to bear, where the case says what they may.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowables: Vec<Check>,
     /// Balance of energy.

@@ -52,6 +52,7 @@ fn sample(verdict: Verdict) -> Summary {
         levels: BTreeMap::new(),
         loads: BTreeMap::new(),
         discrete: BTreeMap::new(),
+        pretensions: BTreeMap::new(),
         maxima: Default::default(),
         allowables: Vec::new(),
         energy,

@@ -1,8 +1,11 @@
 //! Models from seeds, as they are and changed.
 
 use std::fmt::Write;
+use std::path::Path;
 
 use carom_testing::Random;
+
+use super::file::Meshed;
 
 /// What is changed of a model.
 #[derive(Clone, Copy, Debug)]
@@ -17,12 +20,16 @@ pub struct Change {
     pub turned: bool,
     /// x reversed.
     pub mirrored: bool,
-    /// Each gap more by this, m.
+    /// Each gap more by this, and blocks sideways of each other by less, m.
     pub raised: f64,
     /// Distance of the origin, m.
     pub distance: f64,
     /// What is far away besides.
     pub bystander: Option<Bystander>,
+    /// Secondary sides are primary ones, and primary secondary.
+    pub swapped: bool,
+    /// The mesh is that of a file.
+    pub meshed: Option<Meshed>,
 }
 
 impl Default for Change {
@@ -36,6 +43,8 @@ impl Default for Change {
             raised: 0.0,
             distance: 0.0,
             bystander: None,
+            swapped: false,
+            meshed: None,
         }
     }
 }
@@ -49,6 +58,8 @@ pub enum Bystander {
     Rigid,
     /// One that a load moves.
     Loaded,
+    /// One that falls on a plane of its own, with friction.
+    Strikes,
 }
 
 impl Change {
@@ -59,7 +70,7 @@ impl Change {
     }
 
     /// A place.
-    fn place(&self, x: [f64; 2]) -> [f64; 2] {
+    pub fn place(&self, x: [f64; 2]) -> [f64; 2] {
         let [x, y] = self.turn(x.map(|x| self.scale * x));
         [x + self.distance, y - 0.3 * self.distance]
     }
@@ -76,10 +87,13 @@ impl Change {
 
 /// A block of a model.
 #[derive(Clone, Debug)]
-struct Block {
-    origin: [f64; 2],
-    size: [f64; 2],
-    elements: [usize; 2],
+pub struct Block {
+    /// Corner of least x and y, m.
+    pub origin: [f64; 2],
+    /// Extent in x and y, m.
+    pub size: [f64; 2],
+    /// Quadrilaterals along x and y.
+    pub elements: [usize; 2],
     velocity: [f64; 2],
     young: f64,
 }
@@ -167,6 +181,38 @@ impl Model {
         }
     }
 
+    /// The same with blocks as wide as the lowest, of as many elements along their sides, an even number, and of one material: nodes lie on nodes.
+    pub fn matching(mut self) -> Model {
+        let lowest = self.blocks[0].clone();
+        for block in &mut self.blocks {
+            (block.origin[0], block.size[0]) = (lowest.origin[0], lowest.size[0]);
+            block.elements[0] = 2 * lowest.elements[0];
+            block.young = lowest.young;
+        }
+        self
+    }
+
+    /// The same at small strain, without friction: which side of a contact is the secondary one does not matter where nodes stay on nodes.
+    pub fn symmetric(mut self) -> Model {
+        (self.finite, self.friction) = (false, 0.0);
+        self.matching()
+    }
+
+    /// The same of blocks that fall on a plane together, matching.
+    pub fn together(mut self) -> Model {
+        self.on_plane = true;
+        let velocity = [0.0, -SPEED];
+        for block in &mut self.blocks {
+            block.velocity = velocity;
+        }
+        self.matching()
+    }
+
+    /// Its blocks.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
     /// Least speed of a block that falls, m/s.
     pub fn speed(&self) -> f64 {
         SPEED
@@ -192,15 +238,25 @@ impl Model {
         100.0 * self.step() + 6e-4
     }
 
-    /// The case file.
-    pub fn text(&self, change: &Change) -> String {
+    /// The case file; with a mesh of a file if there is one.
+    pub fn text(&self, change: &Change, file: Option<&Path>) -> String {
         let mut meshes: Vec<String> = Vec::new();
         let mut tables: Vec<String> = Vec::new();
+        meshes.extend(file.map(|file| format!("file = {file:?}")));
         for (k, block) in self.blocks.iter().enumerate() {
             let mut raised = block.clone();
+            // upwards, and sideways by less
+            raised.origin[0] += 0.3 * change.raised * (k * k) as f64;
             raised.origin[1] += change.raised * (k + 1) as f64;
-            meshes.push(mesh(&format!("b{k}"), &raised, change));
-            tables.push(self.body(&format!("b{k}"), block, change));
+            if file.is_none() {
+                meshes.push(mesh(&format!("b{k}"), &raised, change));
+            }
+            if k == 0 || change.meshed != Some(Meshed::Joined) {
+                tables.push(self.body(&format!("b{k}"), block, change));
+            }
+            if change.meshed == Some(Meshed::Split) {
+                tables.push(self.body(&format!("b{k}r"), block, change));
+            }
         }
         self.contacts(&mut tables, change);
         if let Some(bystander) = change.bystander {
@@ -243,6 +299,7 @@ impl Model {
             elements: [2, 1],
             velocity: match bystander {
                 Bystander::Loaded => [0.0; 2],
+                Bystander::Strikes => [3.0, -50.0],
                 _ => [30.0, 50.0],
             },
             young: 1e9,
@@ -256,6 +313,14 @@ impl Model {
         if bystander == Bystander::Loaded {
             let load = "[load.z]\non = \"z.top\"\ntraction = [0.0, 1e6]";
             tables.push(load.to_owned());
+        }
+        if bystander == Bystander::Strikes {
+            let bottom = change.side("bottom");
+            tables.push(format!(
+                "[contact.z]\nsecondary = \"z.{bottom}\"\nobstacle.plane = {{ point = {:?}, normal = {:?} }}\nlaw.velocity = {{}}\nfriction.coulomb = 0.3",
+                change.place([40.0, 29.99]),
+                change.turn([0.0, 1.0]),
+            ));
         }
     }
 
@@ -276,9 +341,13 @@ impl Model {
             ));
         }
         for k in 1..self.blocks.len() {
+            let mut sides = [format!("b{k}.{bottom}"), format!("b{}.{top}", k - 1)];
+            if change.swapped {
+                sides.reverse();
+            }
+            let [secondary, primary] = sides;
             tables.push(format!(
-                "[contact.c{k}]\nsecondary = \"b{k}.{bottom}\"\nprimary = \"b{}.{top}\"\n{rest}",
-                k - 1
+                "[contact.c{k}]\nsecondary = \"{secondary}\"\nprimary = \"{primary}\"\n{rest}"
             ));
         }
     }

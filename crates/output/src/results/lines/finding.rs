@@ -1,9 +1,11 @@
 //! What a line looks at, and what it finds.
 
+use std::collections::BTreeMap;
+
 use carom_dynamics::System;
 
 use crate::results::totals::{Last, Totals};
-use crate::summary::{Energy, Exact, Momentum, Zones};
+use crate::summary::{Energy, Exact, Momentum, Pretension, Zones};
 use crate::verdict::Line;
 
 /// What a line looks at.
@@ -15,6 +17,7 @@ pub(crate) struct Evidence<'a> {
     pub(crate) energy: &'a Energy,
     pub(crate) momentum: &'a Momentum,
     pub(crate) exact: Option<&'a Exact>,
+    pub(crate) bolts: &'a BTreeMap<String, Pretension>,
     /// Warnings of the check that concern the result.
     pub(crate) doubts: &'a [String],
     /// Whether linear equations were solved by iterations.

@@ -2,6 +2,7 @@
 //! file of its topic, and its name in [`ALL`].
 
 mod across;
+mod bolts;
 mod chatter;
 mod convergence;
 mod crossing;
@@ -49,6 +50,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     explicit::loose_nodes,
     chatter::of_contacts,
     tolerated::tension,
+    bolts::compressed,
     penetration::of_contacts,
     penetration::of_passing,
     crossing::of_contacts,

@@ -1,0 +1,170 @@
+//! Rigid bodies that land: the instant at which a contact out of flight closes.
+//!
+//! A rigid body meets what it falls on in one point, or in a few at once. Its other points come down later, if the motion after the
+//! impact still brings them there. A configuration that lies a part of a step behind the impact has other points inside as well,
+//! with the approach rates that they had before it: a disc of radius R that spins at ω and falls at v has `√(2 R v dt)` of its rim
+//! inside, which approaches at up to `v + ω √(2 R v dt)`, and restitution of that would turn the spin into flight.
+//!
+//! So a contact of rigid bodies without a force in the step before is paired at the instant t* at which the first of its points
+//! closes,
+//!
+//! `min gap(u + (t* - t_k) v) = 0`,
+//!
+//! and the points that are closed there take part, at their rates there. t* is sought from a step before the instant at which the law
+//! tests closure on: a closing after it in the step before counts for this one. Points that the motion after the impact brings down are
+//! found in the steps to come, at the rates that they then have.
+//!
+//! A theta scheme moves the body by the mean of the velocities before and after, as if the impact were at θ of the step. It lands by
+//! up to `v dt/2` too deep. That depth stays with the contact until it is open, and points count as closed from it on: otherwise all of
+//! the rim above it would be inside, as before.
+
+use std::sync::Arc;
+
+use super::paired::Paired;
+use super::{Driver, Vectors};
+
+/// Steps before the instant at which the law tests closure from which on the closing is sought: those of the step before, and as much
+/// again for the difference of its velocity.
+const BEFORE: f64 = 1.5;
+
+/// Configurations that are looked at for one closing: Newton's method takes three or four, halving gets to rounding.
+const LOOKS: usize = 60;
+
+/// Points of one contact at one configuration.
+struct Look {
+    /// The least gap, m; infinite where nothing is near.
+    gap: f64,
+    /// The next time at which one of them is closed at its rate, after the configuration, s; infinite where none comes closer.
+    next: f64,
+}
+
+impl Driver {
+    /// The instant of a step at which the points of a contact are paired for a law in the rate, over the time by which they move.
+    pub(super) fn captured(&self, contact: usize) -> f64 {
+        let own = self.closings.instant(contact);
+        own.unwrap_or_else(|| self.law(&self.system.contacts[contact]).get().capture())
+    }
+
+    /// Finds the contacts that close out of flight, which are paired as the step begins, and pairs them where they do.
+    pub(super) fn find_closings(&mut self) {
+        let system = Arc::clone(&self.system);
+        let mut any = false;
+        for number in 0..system.contacts.len() {
+            if self.closings.rigid[number] && self.flies(number) {
+                self.closings.instant[number] = self.closing(number);
+                any |= self.closings.instant[number].is_some();
+            }
+        }
+        if any {
+            self.pair(true);
+        }
+    }
+
+    /// Forgets those of the step before.
+    pub(super) fn forget_closings(&mut self) {
+        self.closings.instant.fill(None);
+    }
+
+    /// Whether a contact has had no force in the step before and has not landed since it was last open, and where it is paired a
+    /// point of it is closed.
+    fn flies(&self, number: usize) -> bool {
+        let map = self.map_of(number);
+        let steps = !self.maps.is_static() && !self.between() && map.displacement.x != 0.0;
+        if !steps || map.moves == 0.0 {
+            return false;
+        }
+        let before = &self.state.interface;
+        let free = |point: usize| before.force[point] == 0.0 && before.landed[point] == 0.0;
+        let closed = |point: usize| self.pairing.rows.gap(point) <= self.system.tolerance;
+        self.system.points_of(number).all(free) && self.system.points_of(number).any(closed)
+    }
+
+    /// When the first point of a contact that flies closes, over the time by which its points move; none where it was closed all the
+    /// time.
+    fn closing(&mut self, number: usize) -> Option<f64> {
+        let (tolerance, moves) = (self.system.tolerance, self.map_of(number).moves);
+        let mut closed = self.captured(number);
+        let mut open = closed - BEFORE;
+        if self.look_at(number, open).gap <= tolerance {
+            return None;
+        }
+        let mut look = self.look_at(number, closed);
+        let mut at = closed;
+        for _ in 0..LOOKS {
+            if look.gap <= tolerance {
+                closed = at;
+                if look.gap >= -tolerance {
+                    break;
+                }
+            } else {
+                open = at;
+            }
+            let next = at + look.next / moves;
+            at = match next > open && next < closed {
+                true => next,
+                false => 0.5 * (open + closed),
+            };
+            if at <= open || at >= closed {
+                break;
+            }
+            look = self.look_at(number, at);
+        }
+        Some(closed)
+    }
+
+    /// Pairs one contact a part of the time by which points move after the start of the step.
+    fn look_at(&mut self, number: usize, instant: f64) -> Look {
+        let moves = self.map_of(number).moves;
+        let Vectors { x, push, place, .. } = &mut self.vectors;
+        let captured = Paired::Captured(instant);
+        let motion = &self.state.motion;
+        self.maps
+            .whole(|map| captured.row(map), motion, [x, push], place);
+        self.far.forget_places();
+        std::mem::swap(&mut self.pairing, &mut self.closings.room);
+        self.pairing.clear();
+        self.append(number, self.state.time + instant * moves);
+        let rows = &self.pairing.rows;
+        let mut look = Look {
+            gap: f64::INFINITY,
+            next: f64::INFINITY,
+        };
+        for point in (0..rows.len()).filter(|&point| rows.gap(point).is_finite()) {
+            let gap = rows.gap(point);
+            let rate = rows.product(point, &self.state.motion.v) + rows.rate(point);
+            look.gap = look.gap.min(gap);
+            if rate < 0.0 {
+                look.next = look.next.min(gap / -rate);
+            }
+        }
+        std::mem::swap(&mut self.pairing, &mut self.closings.room);
+        look
+    }
+
+    /// How deep the contacts of rigid bodies have landed, once the gaps at the end of the step are known.
+    pub(super) fn note_landings(&mut self) {
+        for number in 0..self.system.contacts.len() {
+            if !self.closings.rigid[number] {
+                continue;
+            }
+            let interface = &mut self.next.interface;
+            let points = self.system.points_of(number);
+            let depth = match self.closings.instant(number) {
+                Some(_) => {
+                    let pressed = points
+                        .clone()
+                        .filter(|&point| interface.force[point] != 0.0);
+                    pressed.fold(0.0, |most, point| f64::max(most, -interface.gap[point]))
+                }
+                None => {
+                    let touches = |point| interface.gap[point] <= self.system.tolerance;
+                    match points.clone().any(touches) {
+                        true => continue,
+                        false => 0.0,
+                    }
+                }
+            };
+            interface.landed[points].fill(depth);
+        }
+    }
+}

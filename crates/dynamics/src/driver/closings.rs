@@ -1,0 +1,43 @@
+//! Which contacts of rigid bodies close out of flight in the step under way, and when.
+
+use carom_contact::{Law, Pairing};
+
+use crate::system::System;
+
+/// Closings of contacts of rigid bodies.
+pub(super) struct Closings {
+    /// Whether a contact is one between two rigid bodies, or of one with an obstacle, under a law that stops rates.
+    pub(super) rigid: Vec<bool>,
+    /// By contact, in the step under way: when it closes out of flight, over the time by which points move; none of others.
+    pub(super) instant: Vec<Option<f64>>,
+    /// Room for the pairing of one contact.
+    pub(super) room: Pairing,
+}
+
+impl Closings {
+    pub(super) fn of(system: &System) -> Closings {
+        let rigid = |number: usize| {
+            let law = &system.contacts[number].law;
+            let stops = matches!(law, Law::Velocity(_) | Law::Restitution(_));
+            let tests = law.get().watches(-1.0, 0.0) == Some(true);
+            stops && tests && !system.is_of_many(number) && is_rigid(system, number)
+        };
+        let contacts = 0..system.contacts.len();
+        Closings {
+            instant: vec![None; contacts.len()],
+            rigid: contacts.map(rigid).collect(),
+            room: Pairing::default(),
+        }
+    }
+
+    /// When a contact closes out of flight.
+    pub(super) fn instant(&self, contact: usize) -> Option<f64> {
+        self.instant[contact]
+    }
+}
+
+/// Whether all bodies of a contact are rigid.
+pub(super) fn is_rigid(system: &System, contact: usize) -> bool {
+    let mut bodies = system.touching[contact].iter();
+    bodies.all(|&body| system.bodies[body].as_rigid().is_some())
+}
