@@ -14,7 +14,7 @@ use crate::system::System;
 
 /// Numbers of a point that the first rank is given where somebody looks at points, and where the state is to be whole.
 const SEEN: usize = 5;
-pub(super) const WHOLE: usize = 13;
+pub(super) const WHOLE: usize = 14;
 
 /// The points of contacts that the first rank does not have: by rank on the first one, and on another its own.
 #[derive(Debug, Default)]

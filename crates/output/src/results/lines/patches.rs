@@ -17,14 +17,13 @@ const NODES: [f64; 2] = [3.0, 4.0];
 /// A contact with as many as it needs has one.
 const BOUNDS: Bounds = Bounds::Look(1.0);
 
-/// The contact whose largest force has the fewest points, of those with a tenth of the largest force of all.
+/// The contact whose largest force has the fewest points, of those with a tenth of the largest force around their bodies.
 pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
     let system = evidence.system;
     let records = &evidence.last.records.contacts;
-    let most = records.iter().map(|record| record.peak_force);
-    let least = LESSER * most.fold(0.0, f64::max);
     let judged = (0..records.len()).filter(|&k| {
         let force = records[k].peak_force;
+        let least = LESSER * evidence.largest_beside(k, |other| records[other].peak_force);
         // a corner or an edge has no patch whatever the elements
         let is_sharp = records[k].peak_sharp == records[k].peak_closed;
         force > 0.0 && force >= least && !is_sharp && indents(system, k)
