@@ -7,8 +7,9 @@ use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::beam::{Beam, LargeBeam, Rotations};
-use crate::discrete::{Discrete, DiscreteSpec, VisitRow};
+use crate::discrete::{Across, Discrete, DiscreteSpec, VisitRow};
 use crate::distortion::Distortion;
+use crate::locking::Bending;
 use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
@@ -571,5 +572,15 @@ impl Body {
             Body::Shell(shell) => shell.distortion(u, before),
             Body::LargeBeam(_) | Body::Rigid(_) | Body::Discrete(_) | Body::Reduced(_) => None,
         }
+    }
+
+    /// How far the ends of springs, dashpots and fluid gaps have moved across their axis; see [`Discrete::across`].
+    pub fn across(&self, u: &[f64]) -> Option<Across> {
+        self.as_discrete()?.across(u)
+    }
+
+    /// How far linear elements lock in bending; see [`Solid::bending`].
+    pub fn bending(&self, u: &[f64]) -> Option<Bending> {
+        self.as_solid()?.bending(u)
     }
 }

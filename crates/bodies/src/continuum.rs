@@ -27,21 +27,26 @@ pub(crate) struct Point {
 
 impl Points {
     pub(crate) fn new(kind: Kind, rule: &Rule) -> Points {
-        let element = kind.table();
         let points = rule.points.iter().zip(rule.weights);
-        let points = points.map(|(xi, &weight)| {
-            let mut point = Point {
-                weight,
-                n: [0.0; MAX_NODES],
-                dn: [[0.0; 3]; MAX_NODES],
-            };
-            (element.shape)(xi, &mut point.n[..element.nodes]);
-            (element.gradient)(xi, &mut point.dn[..element.nodes]);
-            point
-        });
+        let points = points.map(|(xi, &weight)| Point::new(kind, xi, weight));
         Points {
             points: points.collect(),
         }
+    }
+}
+
+impl Point {
+    /// At the reference coordinates `xi`.
+    pub(crate) fn new(kind: Kind, xi: &[f64; 3], weight: f64) -> Point {
+        let element = kind.table();
+        let mut point = Point {
+            weight,
+            n: [0.0; MAX_NODES],
+            dn: [[0.0; 3]; MAX_NODES],
+        };
+        (element.shape)(xi, &mut point.n[..element.nodes]);
+        (element.gradient)(xi, &mut point.dn[..element.nodes]);
+        point
     }
 }
 

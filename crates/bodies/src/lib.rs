@@ -19,6 +19,7 @@ mod frequency;
 mod gather;
 mod gyroscopic;
 mod kinematics;
+mod locking;
 mod nodes;
 mod pretension;
 mod reduced;
@@ -45,8 +46,8 @@ pub use beam::{
 pub use block::by_kind;
 pub use body::Body;
 pub use discrete::{
-    Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass, Tightened,
-    VisitRow,
+    Across, Curve, CurveError, Discrete, DiscreteKind, DiscreteSpec, FluidGap, Link, PointMass,
+    Tightened, VisitRow,
 };
 pub use distortion::{Distortion, Extreme};
 pub use error::Error;
@@ -56,6 +57,7 @@ pub use finite::{
 };
 pub use flowing::Fibre;
 pub use kinematics::{Kinematics, MassKind};
+pub use locking::Bending;
 pub use pretension::{Bolt, TightenedCell};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;

@@ -9,6 +9,7 @@ mod assembly_energy;
 mod at_rows;
 mod blocks;
 mod choice;
+mod closings;
 mod columns;
 mod compliance;
 pub mod condensed;
@@ -75,7 +76,7 @@ pub use report::{ContactReport, ContactSample, Notice, Notices, StepReport};
 pub use resultant::Resultant;
 pub use scheme::{EnergyIdentity, Scheme, TimeScheme};
 pub use shared::SharedNodes;
-pub use small::{Largest, SmallSliding, SmallStrain, Smallness};
+pub use small::{Largest, Locking, SmallSliding, SmallStrain, Smallness};
 pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{

@@ -3,6 +3,7 @@
 use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
+use crate::closings::{Closing, TREMBLE, Waiting, chatter};
 use crate::impact::{Given, Impact, NoRestitution, OpenImpact};
 use crate::report::ContactReport;
 use crate::small::{Largest, Smallness};
@@ -19,8 +20,10 @@ pub struct Records {
     pub impacts: Vec<Impact>,
     /// Whether what is assumed small has stayed small.
     pub small: Smallness,
-    /// Time at which the force of each contact point ended last, s.
+    /// Time at which the force of each contact point ended last, s; of a closing that counts.
     pub(crate) opened: Vec<f64>,
+    /// What each contact point has done that is still to be counted.
+    pub(crate) waiting: Vec<Waiting>,
     /// Whether all elements at the node of each contact point are deleted; empty as long as none is.
     pub(crate) loose: Vec<bool>,
 }
@@ -32,19 +35,26 @@ pub struct ContactRecord {
     pub peak_force: f64,
     /// End of the step of the largest force, s.
     pub peak_time: f64,
+    /// Points with a force in that step.
+    pub peak_closed: u64,
+    /// Those of them at sharp edges and corners of their surface.
+    pub peak_sharp: u64,
     /// Start of the first step with a force, s; after a static stage of the first one of the dynamics.
     pub first_closing: Option<f64>,
     /// End of the last step with a force, s.
     pub last_force: Option<f64>,
     /// How often a point's force began or ended.
     pub status_changes: u64,
-    /// How often a point's force began again sooner after it ended than mesh and step can tell ([`ContactRecord::chatter`]).
+    /// How often a point closed again, with a force that counts, sooner after it opened than mesh and step can tell
+    /// ([`ContactRecord::chatter`]).
     pub hasty_closings: u64,
-    /// How often a point's force began otherwise.
+    /// How often a point closed otherwise with a force that counts.
     pub closings: u64,
     /// How often the force of a point began whose elements are all deleted, not counted in the two before: it strikes by itself, as often
     /// as its flight has it.
     pub loose_closings: u64,
+    /// Σ force times step over the steps in which points were closed hastily, N s.
+    pub(crate) hasty_impulse: f64,
     /// Largest penetration at the end of a step, m.
     pub penetration: f64,
     /// Largest depth of a point behind the plane that it faced in a step, at its start or at its end, m; by the node of the point. Where it
@@ -94,14 +104,6 @@ pub(crate) struct Pushed {
     pub(crate) turn: f64,
 }
 
-/// Elements and steps to a period, the least that mesh and step carry: two to a half-wave. What a point does in a shorter time is
-/// theirs and not that of the bodies.
-const RESOLVED: f64 = 4.0;
-
-/// Part of the largest force so far, shared by the closed points, below which a force that begins again is no chatter: what
-/// rests on a surface trembles there.
-const TREMBLE: f64 = 0.01;
-
 impl ContactRecord {
     /// Whether an impact begins or ends in a step after which the contact is `active` or not: the velocities of the bodies are asked for then.
     pub(crate) fn changes(&self, active: bool) -> bool {
@@ -143,24 +145,32 @@ impl ContactRecord {
         [0, 1, 2].map(|i| self.exchanged[i].get() - self.later * self.last.1[i])
     }
 
-    /// The closings that are counted by point: hasty ones, others, and those of loose points.
-    pub(crate) fn closings_mut(&mut self) -> [&mut u64; 3] {
-        [
+    /// What is counted by point: closings, hasty, others, and those of loose points, and points at sharp edges at the largest force; and the impulse
+    /// of the hasty ones, N s.
+    pub(crate) fn counts_mut(&mut self) -> ([&mut u64; 4], &mut f64) {
+        let counts = [
             &mut self.hasty_closings,
             &mut self.closings,
             &mut self.loose_closings,
-        ]
+            &mut self.peak_sharp,
+        ];
+        (counts, &mut self.hasty_impulse)
     }
 
     /// Changes of status to a closing that is due: 2 where each point closes once and opens once in an impact. A closing is
-    /// not due if the point opened less than four steps ago, or less than a wave needs to pass over four elements: mesh and step
-    /// carry nothing that fast. Points whose elements are all deleted are not counted: nothing makes their force begin again but
-    /// their own flight. 0 where nothing ever closed.
+    /// not due if the point had no force in the four steps before it at most, or for less time than a wave needs to pass over four
+    /// elements: mesh and step carry nothing that fast. A closing counts once its force is more than a hundredth of the largest so far,
+    /// shared by the closed points; one that opens before does not, nor does its opening. Those that are not due count as none where their
+    /// impulses are a hundredth of that of the contact at most. Points whose elements are all deleted are not counted: nothing makes
+    /// their force begin again but their own flight. 0 where nothing ever closed.
     pub fn chatter(&self) -> f64 {
-        match self.closings {
-            0 => 0.0,
-            due => 2.0 * (due + self.hasty_closings) as f64 / due as f64,
-        }
+        let impulses = [self.hasty_impulse, self.impulse()];
+        chatter([self.closings, self.hasty_closings], impulses)
+    }
+
+    /// Whether an impact of the contact counts: its largest force is more than a hundredth of the largest of the contact.
+    pub fn counts(&self, impact: &Impact) -> bool {
+        impact.peak_force > TREMBLE * self.peak_force
     }
 
     /// Work of the normal forces and of the impulses on the bodies so far, beyond that of a moving obstacle, J: negative where closing
@@ -184,32 +194,6 @@ impl ContactRecord {
     /// Begins with this total force and force on the secondary body, N: what is compressed at the start.
     pub(crate) fn begin(&mut self, force: (f64, [f64; 3])) {
         self.last = force;
-    }
-
-    /// Counts those of some points whose force begins in a step. `opened`: when that of each point ended last, s.
-    /// `loose`: whether the elements of each are deleted, empty for none; both by the number of the point.
-    fn count_closings(
-        &mut self,
-        (system, contact): (&System, usize),
-        (step, points): (&Step, impl Iterator<Item = usize>),
-        (opened, loose): (&mut [f64], &[bool]),
-    ) {
-        let ([start, end], [old, new]) = (step.span, step.forces);
-        let least = TREMBLE * self.peak_force / step.report.closed.max(1) as f64;
-        for point in points {
-            match (old[point] != 0.0, new[point] != 0.0) {
-                (true, false) => opened[point] = end,
-                (false, true) if loose.get(point) == Some(&true) => self.loose_closings += 1,
-                (false, true) => {
-                    let soon = RESOLVED * f64::max(end - start, passage(system, contact));
-                    match start - opened[point] < soon {
-                        true => self.hasty_closings += u64::from(new[point] > least),
-                        false => self.closings += 1,
-                    }
-                }
-                (true, true) | (false, false) => {}
-            }
-        }
     }
 }
 
@@ -249,6 +233,7 @@ impl Records {
             impacts: Vec::new(),
             small: Smallness::of(system),
             opened: vec![f64::NEG_INFINITY; system.points()],
+            waiting: vec![Waiting::default(); system.points()],
             loose: Vec::new(),
         }
     }
@@ -259,6 +244,7 @@ impl Records {
         let small = &self.small;
         self.contacts.len() == contacts
             && self.opened.len() == points
+            && self.waiting.len() == points
             && [0, points].contains(&self.loose.len())
             && small.bodies.len() == system.bodies.len()
             && small.contacts.len() == contacts
@@ -282,6 +268,7 @@ impl Records {
         self.contacts.clone_from(&before.contacts);
         self.small.follow(&before.small);
         self.opened.clone_from(&before.opened);
+        self.waiting.clone_from(&before.waiting);
         self.loose.clone_from(&before.loose);
         self.impacts.truncate(before.impacts.len());
         self.impacts
@@ -293,7 +280,7 @@ impl Records {
     pub fn add(
         &mut self,
         (system, contact): (&System, usize),
-        (step, points): (&Step, impl Iterator<Item = usize>),
+        (step, points): (&Step, impl Iterator<Item = usize> + Clone),
         velocities: [&[f64]; 2],
     ) {
         let (report, dt) = (step.report, step.dt);
@@ -333,9 +320,20 @@ impl Records {
         record.worked.add(step.work);
         record.largest_work = record.largest_work.max(record.worked.get());
         record.status_changes += report.status_changes as u64;
-        if report.status_changes > 0 {
-            let known = (&mut self.opened[..], &self.loose[..]);
-            record.count_closings((system, contact), (step, points), known);
+        if report.status_changes > 0 || report.closed > 0 {
+            let step = Closing {
+                span: step.span,
+                dt,
+                forces: step.forces,
+                least: TREMBLE * record.peak_force / report.closed.max(1) as f64,
+                passage: passage(system, contact),
+            };
+            let known = (&mut self.opened[..], &mut self.waiting[..], &self.loose[..]);
+            let counted = step.count(points.clone(), known);
+            record.closings += counted.due;
+            record.hasty_closings += counted.hasty;
+            record.loose_closings += counted.loose;
+            record.hasty_impulse += counted.hasty_impulse;
         }
         record.mixed = record.mixed.max(report.mixed as u64);
         if report.gap.is_finite() {
@@ -343,6 +341,9 @@ impl Records {
         }
         if report.force > record.peak_force {
             (record.peak_force, record.peak_time) = (report.force, step.span[1]);
+            record.peak_closed = report.closed as u64;
+            let is_sharp = |point: &usize| step.forces[1][*point] != 0.0 && system.is_sharp(*point);
+            record.peak_sharp = points.filter(is_sharp).count() as u64;
         }
         record.energy_crushed += step.crushed;
         let active = report.closed > 0;

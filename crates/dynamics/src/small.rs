@@ -6,7 +6,7 @@
 //! kind are few, since between a thousandth of the energy and all of it there are only so many quarters: 31. They are those of
 //! an assembly by itself, so that they do not depend on bodies that have nothing to do with it.
 
-use carom_bodies::Extreme;
+use carom_bodies::{Bending, Extreme};
 use serde::{Deserialize, Serialize};
 
 use crate::state::State;
@@ -47,13 +47,42 @@ impl Largest {
     }
 }
 
-/// A body at small strain. Places are those in [`Body::cells`](carom_bodies::Body::cells).
+/// Energies of the elements of a body that may lock in bending, at the look at which they stored most.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Locking {
+    /// Strain energy, J.
+    pub energy: f64,
+    /// The part of it by which they lock ([`Bending`]), J.
+    pub locked: f64,
+    /// When, s.
+    pub time: f64,
+}
+
+impl Locking {
+    pub(crate) fn take(&mut self, found: Bending, time: f64) {
+        if found.energy > self.energy {
+            *self = Locking {
+                energy: found.energy,
+                locked: found.locked,
+                time,
+            };
+        }
+    }
+}
+
+/// What is found in a body. Places are those in [`Body::cells`](carom_bodies::Body::cells).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct SmallStrain {
     /// Rotation of an element, rad.
     pub rotation: Largest,
     /// Principal strain of an element, in size.
     pub strain: Largest,
+    /// How far its elements lock in bending; at finite strain too.
+    pub locking: Locking,
+    /// Way of the ends of a spring, a dashpot or a fluid gap across its axis, m.
+    pub across: Largest,
+    /// The largest way of the same ends along it then, m.
+    pub along: f64,
 }
 
 /// A contact of small sliding, beside one that is paired anew. Places are nodes of the mesh; lengths are counted in faces: in
@@ -74,7 +103,7 @@ pub struct SmallSliding {
 /// What the looks have found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Smallness {
-    /// By body; zeros at finite strain.
+    /// By body; rotations and strains are zeros at finite strain.
     pub bodies: Vec<SmallStrain>,
     /// By contact; zeros with finite sliding, and against rigid planes, where both kinds of sliding are the same.
     pub contacts: Vec<SmallSliding>,

@@ -1,7 +1,7 @@
 //! The looks of a driver at what is assumed small ([`crate::small`]).
 
 use carom_algebra::unknowns::{Kind, Unknowns};
-use carom_bodies::{Body, Distortion};
+use carom_bodies::{Across, Bending, Body, Distortion};
 use carom_contact::{Contact, Rows, Search, Target};
 use carom_mesh::Face;
 
@@ -42,9 +42,16 @@ struct Watched {
     lengths: Vec<f64>,
 }
 
-/// Distortion of a body, by its number, at a displacement (m), by the number of the look; that found before where it is larger.
-pub(crate) type DistortionOf<'a> =
-    dyn Fn(usize, (&[f64], usize), &Distortion) -> Option<Distortion> + 'a;
+/// What a look finds in a body: its distortion, or what was found before where that is larger, and how far it locks in bending.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct OfBody {
+    pub(crate) distortion: Option<Distortion>,
+    pub(crate) bending: Option<Bending>,
+    pub(crate) across: Option<Across>,
+}
+
+/// What is found in a body, by its number, at a displacement (m), by the number of the look; `before`: its distortion so far.
+pub(crate) type LookAt<'a> = dyn Fn(usize, (&[f64], usize), &Distortion) -> OfBody + 'a;
 
 impl Watch {
     pub(crate) fn new(system: &System) -> Watch {
@@ -67,20 +74,21 @@ impl Watch {
         due.clear();
         due.extend((0..system.assemblies.all.len()).map(|number| is_due(state, step, number)));
         if due.contains(&true) {
-            let of = |body: usize, (u, looks): (&[f64], usize), before: &Distortion| {
-                system.bodies[body].distortion(u, looks, before)
+            let of = |body: usize, (u, looks): (&[f64], usize), before: &Distortion| OfBody {
+                distortion: system.bodies[body].distortion(u, looks, before),
+                bending: system.bodies[body].bending(u),
+                across: system.bodies[body].across(u),
             };
             self.look((system, &due), &of, state);
         }
         self.due = due;
     }
 
-    /// Looks at the assemblies of a state that are due. `distortion`: of a body at a displacement, by the number of the look, or what was found
-    /// before where that is larger.
+    /// Looks at the assemblies of a state that are due.
     pub(crate) fn look(
         &mut self,
         (system, due): (&System, &[bool]),
-        distortion: &DistortionOf,
+        look_at: &LookAt,
         state: &mut State,
     ) {
         for (assembly, _) in due.iter().enumerate().filter(|(_, due)| **due) {
@@ -102,8 +110,19 @@ impl Watch {
                 strain: of.strain.extreme(),
             };
             let looks = found.looked[assembly].looks as usize;
-            let found_now = distortion(body, (u, looks), &before);
-            if let Some(Distortion { rotation, strain }) = found_now {
+            let OfBody {
+                distortion,
+                bending,
+                across,
+            } = look_at(body, (u, looks), &before);
+            if let Some(bending) = bending {
+                of.locking.take(bending, time);
+            }
+            if let Some(moved) = across {
+                of.across.take(moved.across, moved.place, time);
+                of.along = of.along.max(moved.along);
+            }
+            if let Some(Distortion { rotation, strain }) = distortion {
                 of.rotation.take(rotation.value, rotation.cell, time);
                 of.strain.take(strain.value, strain.cell, time);
             }

@@ -207,7 +207,7 @@ impl System {
             let faces = contact.secondary.faces.iter();
             faces.map(|face| renumbered(face, &number)).collect()
         };
-        let secondary_faces = model.contacts.iter().map(faces_of).collect();
+        let secondary_faces: Vec<Vec<_>> = model.contacts.iter().map(faces_of).collect();
         let about = nearest_corner(&x);
         let origin = match model.contacts.is_empty() {
             true => about,
@@ -279,6 +279,7 @@ impl System {
             has_bolts: bodies.iter().any(|body| !body.bolts().is_empty()),
             has_dashpots: bodies.iter().any(Body::has_damping),
             nodes_of_whole: x.len(),
+            sharp: crate::sharp::points(&contacts, &secondary_faces, &x),
             diagonals: body_masses.iter().map(|own| diagonal(own, &x)).collect(),
             bodies,
             body_masses,

@@ -34,6 +34,7 @@ mod part;
 mod refused;
 mod reported;
 mod rigid;
+mod sharp;
 mod sliding;
 mod solver;
 mod stability;

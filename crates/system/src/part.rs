@@ -258,6 +258,7 @@ impl System {
             secondary_faces: faces
                 .map(|faces| faces.iter().map(|face| face.renumbered(number)).collect())
                 .collect(),
+            sharp: self.sharp.clone(),
             sides: self.sides.clone(),
             touching: self.touching.clone(),
             of_many: self.of_many.clone(),

@@ -87,6 +87,8 @@ pub struct System {
     pub contacts: Vec<Contact>,
     /// Faces of the secondary surface of each contact, their nodes by system number.
     pub secondary_faces: Vec<Vec<Face>>,
+    /// Whether each contact point is at a sharp edge or corner of its surface.
+    pub sharp: Vec<bool>,
     /// Bodies of each contact: the secondary's, and the primary's unless it is rigid.
     /// Where a side has several, the first of them.
     pub sides: Vec<(usize, Option<usize>)>,

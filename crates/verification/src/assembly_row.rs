@@ -124,6 +124,7 @@ fn model(assemblies: u32, end: f64) -> Result<Model, Error> {
                 kind: DiscreteKind::Fluid(FluidGap {
                     masses: [8.0, -8.0, 8.0],
                     axis: Some([0.0, 1.0, 0.0]),
+                    width: None,
                 }),
             }));
         }

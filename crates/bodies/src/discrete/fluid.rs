@@ -15,6 +15,8 @@ pub struct FluidGap {
     pub masses: [f64; 3],
     /// Unit vector along the axis of the cylinders, along which no fluid is moved; none in the plane, where it is across.
     pub axis: Option<[f64; 3]>,
+    /// Width of the gap R₂ - R₁, m; none where the masses are given without it.
+    pub width: Option<f64>,
 }
 
 impl FluidGap {
@@ -25,6 +27,7 @@ impl FluidGap {
         FluidGap {
             masses: [moved, -(one + moved), one + two + moved],
             axis: None,
+            width: Some(outer - inner),
         }
     }
 

@@ -8,6 +8,7 @@
 //! Forces on the ground have no partner in the system, and forces along n have a moment where nodes do not stand along n:
 //! [`Body::balances_itself`](crate::Body::balances_itself).
 
+mod across;
 mod bolt;
 mod curve;
 mod fluid;
@@ -18,6 +19,7 @@ use carom_algebra::csr::Csr;
 use carom_algebra::unknowns::{Kind, Unknowns};
 use carom_mesh::{ElementId, Mesh};
 
+pub use self::across::Across;
 pub use self::curve::{Curve, CurveError};
 pub use self::fluid::FluidGap;
 use crate::gyroscopic;
@@ -145,6 +147,8 @@ pub struct Discrete {
     first: Vec<[usize; 2]>,
     /// Nodes of an element.
     per: usize,
+    /// Length of each element, m.
+    lengths: Vec<f64>,
     /// Rotations of all point masses, and the moment of inertia of each, kg m².
     rotations: Vec<(usize, f64)>,
     /// First rotations of point masses in space whose axes turn with their nodes.
@@ -207,7 +211,9 @@ impl Discrete {
                     .collect()
             }
         };
+        let corners = |cell: &ElementId| [of(cell)[0], of(cell)[per - 1]];
         let mut discrete = Discrete {
+            lengths: across::lengths(mesh, spec.cells.iter().map(corners)),
             rotations,
             spinning,
             first: nodes.iter().map(first).collect(),
@@ -309,6 +315,32 @@ impl Discrete {
             1 => -along(first[0]),
             _ => along(first[1]) - along(first[0]),
         }
+    }
+
+    /// Length of an element, m: between its ends, or the size of the mesh where these are at one place or one is the ground.
+    pub fn length(&self, place: u32) -> f64 {
+        self.lengths[place as usize]
+    }
+
+    /// The element that has moved farthest across its axis at the displacement `u` (m, system vector); none of masses, and of links without an
+    /// axis.
+    pub fn across(&self, u: &[f64]) -> Option<Across> {
+        let axis = match &self.kind {
+            DiscreteKind::Mass(_) => return None,
+            DiscreteKind::Spring(_) | DiscreteKind::Dashpot(_) | DiscreteKind::Bolt(_) => {
+                self.link()?.axis?
+            }
+            // in the plane the axis is across it
+            DiscreteKind::Fluid(gap) => gap.axis.unwrap_or([0.0; 3]),
+        };
+        let of = |first: usize, i: usize| if i < self.dim { u[first + i] } else { 0.0 };
+        let ways = self.first.iter().map(|first| {
+            [0, 1, 2].map(|i| match self.per {
+                1 => -of(first[0], i),
+                _ => of(first[1], i) - of(first[0], i),
+            })
+        });
+        Some(across::farthest(&axis, ways))
     }
 
     /// Name of the kind: `mass`, `spring`, `dashpot`, `fluid` or `pretension`.

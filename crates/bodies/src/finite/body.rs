@@ -2,6 +2,7 @@
 
 use carom_materials::{Law, Material};
 
+use super::Formulation;
 use super::cell::Shape;
 use super::element::Fault;
 use super::placement::Stored;
@@ -30,6 +31,11 @@ pub(crate) struct Outcome {
 pub(super) type Failed = (usize, Fault);
 
 impl Finite {
+    /// How its elements integrate the internal work.
+    pub(crate) fn formulation(&self) -> Formulation {
+        self.shape.formulation
+    }
+
     pub(crate) fn new(law: Law, shape: Shape, is_viscous: bool, limit: Option<f64>) -> Finite {
         let kept_by_law = law.finite().map_or(0, Material::history_len);
         Finite {

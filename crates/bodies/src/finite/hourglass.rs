@@ -29,7 +29,7 @@ const MAX_CORNERS: usize = 8;
 const MAX_PATTERNS: usize = 4;
 
 /// The products of reference coordinates that are the patterns of a quadrilateral or a hexahedron.
-pub(super) fn patterns(kind: Kind) -> &'static [&'static [usize]] {
+pub(crate) fn patterns(kind: Kind) -> &'static [&'static [usize]] {
     match kind.table().dim {
         2 => &[&[0, 1]],
         _ => &[&[1, 2], &[2, 0], &[0, 1], &[0, 1, 2]],
@@ -37,7 +37,7 @@ pub(super) fn patterns(kind: Kind) -> &'static [&'static [usize]] {
 }
 
 /// h_a of a pattern at a node of these reference coordinates.
-pub(super) fn pattern(axes: &[usize], xi: &[f64; 3]) -> f64 {
+pub(crate) fn pattern(axes: &[usize], xi: &[f64; 3]) -> f64 {
     axes.iter().map(|&i| xi[i]).product()
 }
 

@@ -30,6 +30,7 @@ pub(crate) use body::{Finite, Outcome};
 pub(crate) use cell::Shape;
 pub use deletion::Deleted;
 pub use formulation::Formulation;
+pub(crate) use hourglass::{pattern, patterns};
 pub use looks::{FrequencyBound, Looks, Seen};
 pub use placement::{Placement, Stored};
 pub use pressure::FollowerPressure;

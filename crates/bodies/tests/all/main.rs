@@ -13,6 +13,7 @@ mod discrete;
 mod distortion;
 mod finite;
 mod flowing;
+mod locking;
 mod mass;
 mod one_point_shells;
 mod patch;

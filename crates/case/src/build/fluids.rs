@@ -112,6 +112,9 @@ impl Builder<'_> {
                     kind: DiscreteKind::Fluid(FluidGap {
                         masses: per_length.map(|mass| mass * length),
                         axis: Some(axis),
+                        width: fluid
+                            .diameters
+                            .map(|[inner, outer]| 0.5 * (outer.0 - inner.0)),
                     }),
                 }));
             }

@@ -36,6 +36,7 @@ mod reductions;
 mod reference;
 mod refine;
 mod repeat;
+mod resolved;
 mod resume;
 mod resume_cases;
 mod simulation;

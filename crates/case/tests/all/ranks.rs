@@ -265,12 +265,20 @@ pub fn assert_same(name: &str, one: &State, other: &State) {
     for (a, b) in one.records.contacts.iter().zip(&other.records.contacts) {
         let counts = |record: &ContactRecord| {
             let ContactRecord {
+                peak_closed,
+                peak_sharp,
                 status_changes,
                 hasty_closings,
                 closings,
                 ..
             } = record;
-            [*status_changes, *hasty_closings, *closings]
+            [
+                *peak_closed,
+                *peak_sharp,
+                *status_changes,
+                *hasty_closings,
+                *closings,
+            ]
         };
         assert_eq!(counts(a), counts(b), "{name}");
         let numbers = |record: &ContactRecord| {
@@ -280,6 +288,7 @@ pub fn assert_same(name: &str, one: &State, other: &State) {
                 record.energy_crushed,
                 record.friction_loss(),
                 record.impulse(),
+                record.chatter(),
             ]
         };
         for (k, (a, b)) in numbers(a).into_iter().zip(numbers(b)).enumerate() {

@@ -98,7 +98,7 @@ impl Active {
     }
 
     /// Those of a range, ascending.
-    pub(super) fn within(&self, range: Range<usize>) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn within(&self, range: Range<usize>) -> impl Iterator<Item = usize> + Clone + '_ {
         let list = match self.all {
             true => self.own.as_ref(),
             false => Some(&self.points),

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_bodies::{Distortion, Extreme, Share};
+use carom_bodies::{Bending, Distortion, Extreme, Share};
 use carom_contact::Search;
 use carom_ranks::Ranks;
 
@@ -17,12 +17,12 @@ use super::leapfrog::Direct;
 use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
-use crate::records::ContactRecord;
 use crate::shared::{Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive};
 use crate::small::is_due;
 use crate::state::State;
 use crate::system::{Model, System};
 use crate::update::Sums;
+use crate::watch::OfBody;
 
 /// What one of several ranks has of a run, and sends to others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -123,8 +123,11 @@ impl Driver {
             self.state.shapes.looks = Vec::new();
             // what was counted so far is the first rank's
             let records = &mut self.state.records.contacts;
-            let counts = records.iter_mut().flat_map(ContactRecord::closings_mut);
-            counts.for_each(|count| *count = 0);
+            for record in records {
+                let (counts, impulse) = record.counts_mut();
+                counts.into_iter().for_each(|count| *count = 0);
+                *impulse = 0.0;
+            }
         }
         if let Some(mut direct) = self.direct.take() {
             self.take_homes(&mut shared, &mut direct);
@@ -375,8 +378,14 @@ impl Driver {
             shared.bring_contacts(dim, &mut self.state);
             let u = &self.state.motion.u;
             let found = shared.distortions(u, &said[2..]);
+            let bending = shared.bending(u);
             if shared.is_first() {
-                let of = |body: usize, _: (&[f64], usize), _: &Distortion| found[body];
+                let of = |body: usize, _: (&[f64], usize), _: &Distortion| OfBody {
+                    distortion: found[body],
+                    bending: bending[body],
+                    // springs are not shared
+                    across: None,
+                };
                 let state = &mut self.state;
                 self.watch.look((&system, &due), &of, state);
             }
@@ -402,6 +411,25 @@ fn of_ranks(ranks: &Ranks, own: Option<Error>) -> Error {
 }
 
 impl Shared {
+    /// How far the elements of each body lock in bending at the displacement `u`, of all ranks together; none of bodies without such elements.
+    fn bending(&self, u: &[f64]) -> Vec<Option<Bending>> {
+        let of_body = |shares: &[Share; 2]| {
+            let found = shares.iter().map(|share| share.solid().bending(u));
+            let found = found.flatten().reduce(Bending::with);
+            found.map_or([0.0; 3], |own| [1.0, own.energy, own.locked])
+        };
+        let mut sums: Vec<f64> = self.bodies().flat_map(of_body).collect();
+        self.ranks.reduce(&mut sums, &mut []);
+        let bodies = sums.chunks_exact(3);
+        let bending = bodies.map(|sum| {
+            (sum[0] > 0.0).then_some(Bending {
+                energy: sum[1],
+                locked: sum[2],
+            })
+        });
+        bending.collect()
+    }
+
     /// Rotation and strain of the elements of each body at the displacement `u`, the largest of all ranks; none at finite strain. `looks`: by body,
     /// which point of each element is looked at.
     fn distortions(&self, u: &[f64], looks: &[f64]) -> Vec<Option<Distortion>> {

@@ -5,6 +5,7 @@ use carom_contact::law::Status;
 use carom_ranks::{Message, Ranks};
 
 use super::halo::{Halo, With, by_rank};
+use crate::closings::Waiting;
 use crate::march::{Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::records::{ContactRecord, Records};
@@ -13,7 +14,7 @@ use crate::system::System;
 
 /// Numbers of a point that the first rank is given where somebody looks at points, and where the state is to be whole.
 const SEEN: usize = 5;
-pub(super) const WHOLE: usize = 13;
+pub(super) const WHOLE: usize = 14;
 
 /// The points of contacts that the first rank does not have: by rank on the first one, and on another its own.
 #[derive(Debug, Default)]
@@ -216,19 +217,28 @@ fn collect(
     }
 }
 
-/// Makes the closings that each rank has counted those of the first, which has all of them then.
+/// Makes what each rank has counted that of the first, which has all of it then.
 fn sum_closings(ranks: &Ranks, records: &mut Records) {
-    let mut counts = Vec::with_capacity(3 * records.contacts.len());
+    let mut sums = Vec::with_capacity(5 * records.contacts.len());
     for record in &mut records.contacts {
-        counts.extend(record.closings_mut().map(|count| *count as f64));
+        let (counts, impulse) = record.counts_mut();
+        sums.extend(counts.map(|count| *count as f64));
+        sums.push(*impulse);
     }
-    ranks.reduce(&mut counts, &mut []);
-    let mut counts = counts.iter();
+    ranks.reduce(&mut sums, &mut []);
+    let mut sums = sums.iter();
+    let mut sum = || {
+        sums.next()
+            .copied()
+            .filter(|_| ranks.is_first())
+            .unwrap_or_default()
+    };
     for record in &mut records.contacts {
-        for count in record.closings_mut() {
-            let sum = counts.next().filter(|_| ranks.is_first());
-            *count = sum.map_or(0, |sum| *sum as u64);
+        let (counts, impulse) = record.counts_mut();
+        for count in counts {
+            *count = sum() as u64;
         }
+        *impulse = sum();
     }
 }
 
@@ -311,6 +321,12 @@ pub(super) fn of_point(
         return;
     }
     let mut is_watched = f64::from(watched[point]);
+    let mut waits = match state.records.waiting[point] {
+        Waiting::Nothing => 0.0,
+        Waiting::Due => 1.0,
+        Waiting::Hasty => 2.0,
+        Waiting::Chattering => 3.0,
+    };
     let rest = [
         &mut carried[point],
         &mut rate[point],
@@ -320,9 +336,16 @@ pub(super) fn of_point(
         &mut landed[point],
         &mut state.records.opened[point],
         &mut is_watched,
+        &mut waits,
     ];
     rest.into_iter().for_each(visit);
     watched[point] = is_watched != 0.0;
+    state.records.waiting[point] = match waits {
+        0.0 => Waiting::Nothing,
+        1.0 => Waiting::Due,
+        2.0 => Waiting::Hasty,
+        _ => Waiting::Chattering,
+    };
 }
 
 /// A status as a number: pieces from 3 on.

@@ -9,9 +9,18 @@ pub fn section(line: &str) -> &'static str {
         "chatter" | "closed" => "plot-status",
         "sampling" => "plot-load",
         "penetration" | "passing" | "crossing" | "penetration-between" => "plot-gap",
-        "step-in-contact" | "force-error" | "not-finite" | "clipped-tension" => "plot-force",
+        "step-in-contact" | "force-error" | "not-finite" | "clipped-tension" | "points-closed" => {
+            "plot-force"
+        }
         "angular-momentum-residual" => "balances",
-        "small-strain-rotation" | "small-strain" | "met" | "warning" => "model",
+        "small-strain-rotation"
+        | "small-strain"
+        | "met"
+        | "warning"
+        | "bending-locked"
+        | "axis-rotation"
+        | "fluid-gap"
+        | "compressed-bolt" => "model",
         line if line.starts_with("small-sliding") => "model",
         "added-mass" => "work",
         _ => "verdict",

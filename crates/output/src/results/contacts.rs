@@ -63,7 +63,8 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 energy_crushed: record.energy_crushed,
                 mixed_supports: matches!(contact.integration, Integration::Weak { .. })
                     .then_some(record.mixed),
-                impacts: impacts().count() + usize::from(still_closed && !results.is_static()),
+                impacts: impacts().filter(|impact| record.counts(impact)).count()
+                    + usize::from(still_closed && !results.is_static()),
                 restitution: last
                     .as_ref()
                     .and_then(|impact| impact.restitution)

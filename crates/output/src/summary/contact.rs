@@ -54,7 +54,8 @@ pub struct Contact {
     /// Coulomb friction, where there is some.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub friction: Option<Friction>,
-    /// Impacts, from the first closing to the last release before a flight that lasts.
+    /// Impacts, from the first closing to the last release before a flight that lasts, whose largest force is more than a hundredth of that of
+    /// the contact.
     pub impacts: usize,
     /// Restitution of the last complete impact, from the momenta of the bodies before and after it; `None` where it means
     /// nothing ([`carom_dynamics::Impact::restitution`]), or links join further bodies to one of the two.

@@ -1,6 +1,7 @@
 //! The lines of the verdict of a run, one function each. To add one: a function from the evidence to what it finds, in the
 //! file of its topic, and its name in [`ALL`].
 
+mod across;
 mod bolts;
 mod chatter;
 mod convergence;
@@ -12,7 +13,9 @@ mod explicit;
 mod finding;
 mod finite;
 mod happened;
+mod locking;
 mod momentum;
+mod patches;
 mod penetration;
 mod resolution;
 mod sampling;
@@ -54,10 +57,14 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     crossing::between,
     resolution::of_peaks,
     resolution::of_impulses,
+    patches::of_contacts,
     exact::force,
     small::rotation,
     small::strain,
     small::of_reduced,
+    across::axis_rotation,
+    across::fluid_gap,
+    locking::in_bending,
     small::slide,
     small::turn,
     small::invented,

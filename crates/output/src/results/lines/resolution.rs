@@ -11,8 +11,8 @@ use crate::verdict::{Bounds, Line};
 /// meets the closing to within a step: some percent of the peak at ten steps. Impulses and energies may be right all the same.
 const BOUNDS: Bounds = Bounds::Look(0.1);
 
-/// Peak over the largest of the run, below which nobody relies on it.
-const LESSER: f64 = 0.1;
+/// Peak over the largest around its bodies, below which nobody relies on it.
+pub(super) const LESSER: f64 = 0.1;
 
 /// The contact whose largest force lasts the fewest steps.
 pub(super) fn of_peaks(evidence: &Evidence) -> Finding {
@@ -66,11 +66,12 @@ fn peaks(evidence: &Evidence) -> Vec<Impact> {
             *of_contact = Some(impact);
         }
     }
-    let all = largest.iter().flatten();
-    let most = all.map(|impact| impact.peak_force).fold(0.0, f64::max);
-    let mut near: Vec<Impact> = largest.into_iter().flatten().collect();
-    near.retain(|impact| impact.peak_force >= LESSER * most);
-    near
+    let force = |contact: usize| largest[contact].as_ref().map_or(0.0, |one| one.peak_force);
+    let matters = |impact: &&Impact| {
+        let most = evidence.largest_beside(impact.contact as usize, force);
+        impact.peak_force >= LESSER * most
+    };
+    largest.iter().flatten().filter(matters).cloned().collect()
 }
 
 /// Whether something gives an impact of this contact a duration: waves in a body, or the stiffness of the law.

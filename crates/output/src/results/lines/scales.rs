@@ -34,6 +34,13 @@ impl Evidence<'_> {
         }
     }
 
+    /// The largest force of the contacts that may have to do with one, N. `of`: the force of each.
+    pub(super) fn largest_beside(&self, contact: usize, of: impl Fn(usize) -> f64) -> f64 {
+        let assemblies = &self.system.assemblies;
+        let own = &assemblies.all[assemblies.of_contact(self.system, contact)];
+        own.contacts.iter().map(|&k| of(k)).fold(0.0, f64::max)
+    }
+
     /// The largest, over the assemblies, of a part of an energy, with what follows the name of the quantity; that of the whole run
     /// where there is one assembly or none.
     pub(super) fn worst_assembly(

@@ -133,6 +133,7 @@ fn of_bodies(
 fn is_watched(system: &System, body: usize) -> bool {
     let body = &system.bodies[body];
     body.as_beam().is_some()
+        || body.as_shell().is_some_and(|shell| !shell.turns())
         || body
             .as_solid()
             .is_some_and(|solid| !solid.has_finite_strain())
@@ -149,6 +150,10 @@ fn instead(system: &System, body: usize) -> String {
                 Some(_) => "solid cells of the same material",
             }
         );
+    }
+    if let Some(shell) = system.bodies[body].as_shell() {
+        let name = shell.name();
+        return format!("use body.{name}.section.shell.rotations = \"finite\"");
     }
     let Some(body) = system.bodies[body].as_solid() else {
         return String::new();
