@@ -9,7 +9,6 @@
 use carom_bodies::{Bending, Extreme};
 use serde::{Deserialize, Serialize};
 
-use crate::state::State;
 use crate::system::System;
 
 /// Steps before which there is a look at each.
@@ -120,6 +119,14 @@ pub(crate) struct Looked {
     energy: f64,
 }
 
+impl Looked {
+    /// Whether it is time to look at the end of a step. `energy`: strain energy of the assembly, and its largest energy, J.
+    pub(crate) fn is_due(&self, step: u64, [energy, largest]: [f64; 2]) -> bool {
+        let grown = energy > GROWTH * self.energy.max(LEAST * largest);
+        step < FIRST || step.is_multiple_of(EVERY) || grown
+    }
+}
+
 impl Smallness {
     pub(crate) fn of(system: &System) -> Smallness {
         Smallness {
@@ -165,21 +172,4 @@ impl Smallness {
         looked.looks += 1;
         looked.energy = looked.energy.max(energy);
     }
-}
-
-/// Strain energy of an assembly and its largest energy, J: in its own frame, with what materials dissipated; that of all bodies where
-/// they are not told by assembly.
-pub(crate) fn energies(state: &State, assembly: usize) -> [f64; 2] {
-    match state.assemblies.all.get(assembly) {
-        Some(own) => [own.taken(), own.largest],
-        None => [state.ledger.balance.strain, state.ledger.largest_energy],
-    }
-}
-
-/// Whether it is time to look at an assembly at the end of a step.
-pub(crate) fn is_due(state: &State, step: u64, assembly: usize) -> bool {
-    let looked = &state.records.small.looked[assembly];
-    let [energy, largest] = energies(state, assembly);
-    let grown = energy > GROWTH * looked.energy.max(LEAST * largest);
-    step < FIRST || step.is_multiple_of(EVERY) || grown
 }

@@ -5,7 +5,6 @@ use carom_bodies::{Across, Bending, Body, Distortion};
 use carom_contact::{Contact, Rows, Search, Target};
 use carom_mesh::Face;
 
-use crate::small::{energies, is_due};
 use crate::state::State;
 use crate::system::System;
 
@@ -141,6 +140,20 @@ impl Watch {
             }
         }
     }
+}
+
+/// Strain energy of an assembly and its largest energy, J: in its own frame, with what materials dissipated; that of all bodies where
+/// they are not told by assembly.
+fn energies(state: &State, assembly: usize) -> [f64; 2] {
+    match state.assemblies.all.get(assembly) {
+        Some(own) => [own.taken(), own.largest],
+        None => [state.ledger.balance.strain, state.ledger.largest_energy],
+    }
+}
+
+/// Whether it is time to look at an assembly at the end of a step.
+pub(crate) fn is_due(state: &State, step: u64, assembly: usize) -> bool {
+    state.records.small.looked[assembly].is_due(step, energies(state, assembly))
 }
 
 impl Between {

@@ -124,7 +124,7 @@ use passage::Passage;
 pub use ranked::RankShare;
 use rebound::Rebound;
 use refined::Refined;
-use scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
+use scratch::{Pace, Predictor, Projected, Restoring, Squares, Vectors, Works};
 use supports::Jump;
 pub use unfit::why_not_on_ranks;
 use weak::{WeakForms, WithWeak};
@@ -230,7 +230,7 @@ pub struct Driver {
     vectors: Vectors,
     works: Works,
     /// Sizes of the forces of each assembly.
-    squares: Vec<residual::Squares>,
+    squares: Vec<Squares>,
     /// Energies of the iteration.
     stored: Stored,
     /// Forces of links in the step, N; empty without links.

@@ -18,11 +18,10 @@ use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::shared::{Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive};
-use crate::small::is_due;
 use crate::state::State;
 use crate::system::{Model, System};
 use crate::update::Sums;
-use crate::watch::OfBody;
+use crate::watch::{OfBody, is_due};
 
 /// What one of several ranks has of a run, and sends to others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

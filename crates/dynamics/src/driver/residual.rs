@@ -6,6 +6,7 @@ use carom_bodies::Body;
 use carom_mesh::ElementId;
 
 use super::loads::damping_rate;
+use super::scratch::Squares;
 use super::{Driver, Which};
 use crate::error::{Error, MeshNode};
 
@@ -26,26 +27,6 @@ pub(super) struct Standing {
     pub(super) is_tolerable: bool,
     /// Whether none has more than that or than may be rounding.
     pub(super) is_rounding: bool,
-}
-
-/// Squares of norms of the forces of an assembly, N².
-#[derive(Clone, Copy, Default)]
-pub(super) struct Squares {
-    imbalance: f64,
-    /// Of contacts, loads, internal and inertia forces, links.
-    forces: [f64; 5],
-    /// Of the momentum at the start of the step, per step.
-    momentum: f64,
-    /// What rounding of places leaves of forces.
-    rounding: f64,
-}
-
-impl Squares {
-    /// Largest norm of the forces that balance, N.
-    fn scale(&self) -> f64 {
-        let largest = self.forces.into_iter().fold(self.momentum, f64::max);
-        largest.sqrt().max(f64::MIN_POSITIVE)
-    }
 }
 
 impl Driver {

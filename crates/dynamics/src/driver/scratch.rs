@@ -246,3 +246,23 @@ pub(super) struct Restoring {
     /// w of each point with an impulse, J.
     pub(super) works: Vec<f64>,
 }
+
+/// Squares of norms of the forces of an assembly, N².
+#[derive(Clone, Copy, Default)]
+pub(super) struct Squares {
+    pub(super) imbalance: f64,
+    /// Of contacts, loads, internal and inertia forces, links.
+    pub(super) forces: [f64; 5],
+    /// Of the momentum at the start of the step, per step.
+    pub(super) momentum: f64,
+    /// What rounding of places leaves of forces.
+    pub(super) rounding: f64,
+}
+
+impl Squares {
+    /// Largest norm of the forces that balance, N.
+    pub(super) fn scale(&self) -> f64 {
+        let largest = self.forces.into_iter().fold(self.momentum, f64::max);
+        largest.sqrt().max(f64::MIN_POSITIVE)
+    }
+}
