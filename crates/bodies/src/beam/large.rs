@@ -29,7 +29,7 @@ use carom_algebra::unknowns::Unknowns;
 
 use super::element::EndWeights;
 use super::section::BeamTheory;
-use super::strain::{Elastic, Invariants, Matrix6, Pair, extension};
+use super::strain::{Elastic, Invariants, Matrix6, Pair};
 use super::{Beam, SectionForces, SectionStress};
 use crate::flowing::{FibreSection, Flowing};
 use crate::turning::{balanced, spatial};
@@ -100,13 +100,8 @@ impl LargeBeam {
                 }
             };
             let [along_y, along_z] = properties.shear_areas;
-            let bending = |area: f64, second: f64| {
-                let bends = length * length / (12.0 * young * second);
-                extension(bends * across(area, second))
-            };
             Elastic {
                 length,
-                extends: [bending(along_y, about_z), bending(along_z, about_y)],
                 stiffness: [
                     young * properties.area,
                     across(along_y, about_z),
@@ -287,11 +282,9 @@ impl LargeBeam {
         let strains = elastic.strains(&s);
         let old = &at.old[self.history_of(section, element)];
         let (forces, tangent) = section.tangent(&Elastic::flowing(&strains), at.dt, old);
-        let stresses = elastic.stresses_with(&strains, &forces);
-        let d = elastic.gradient_of(&s, &stresses);
+        let d = elastic.gradient_of(&s, &elastic.stresses_with(&strains, &forces));
         let pair = end.pair;
-        let tangent = elastic.tangent_with(&s, (&stresses, &tangent));
-        (end, pair, d, tangent)
+        (end, pair, d, elastic.tangent_with(&s, &tangent))
     }
 
     /// Numbers that its fibres keep from one step to the next.
@@ -514,11 +507,10 @@ impl LargeBeam {
                     elastic.stresses_with(&strains, &flowing)
                 }
             };
-            let strains = elastic.strains(&s);
-            let f = elastic.across_the_chord(&strains, &f);
             let (force, moment) = (Vec3::new(f[0], f[1], f[2]), Vec3::new(f[3], f[4], f[5]));
             // m' + x' × n = 0 from the middle to the ends
-            let half = elastic.chord(&strains) * (0.5 * elastic.length);
+            let [stretch, along_y, along_z, ..] = elastic.strains(&s);
+            let half = Vec3::new(1.0 + stretch, along_y, along_z) * (0.5 * elastic.length);
             let lever = half.cross(&force);
             SectionForces {
                 force: force.into(),

@@ -8,15 +8,6 @@
 //! `Γ = g/c + h a (a·g) - e₁`, `κ = f a/L`, `c = cos(φ/2)`, `h = -1/(4 c³ (1 + c))`, `f = φ/sin φ`.
 //!
 //! κ is exact for any rotation below 90° between the nodes. All invariants are bilinear in places and directors.
-//!
-//! Where the stiffness across the axis is for the most part that of the bending between the nodes, `12 E I/L²`, Γ_y and Γ_z are angles between the section
-//! and the chord, and the section in the middle is no normal of the axis. The axis between the nodes is longer than the projection of the chord
-//! on that normal. With β the part of Γ_y that is bending, the shape of a cubic with these angles at both ends has the extension
-//!
-//! `ε = Γ_x + c_y Γ_y² + c_z Γ_z²`, `c = β - 2 β²/5`.
-//!
-//! Without it a tension N above the stiffness across the axis would turn the section away from the chord: cables of elements longer than
-//! √(12 E I/N) would be unstable. Pure shear (β = 0) has the normal force along the normal of the section, as Reissner's beam.
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
@@ -46,17 +37,11 @@ pub(super) struct Pair {
     pub(super) directors: [Mat3; 2],
 }
 
-/// An element: its length (m), the stiffness of each strain, N and N m², and c_y and c_z.
+/// An element: its length (m) and the stiffness of each strain, N and N m².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elastic {
     pub(super) length: f64,
     pub(super) stiffness: [f64; 6],
-    pub(super) extends: [f64; 2],
-}
-
-/// c of a part β of bending.
-pub(super) fn extension(bending: f64) -> f64 {
-    bending * (1.0 - 0.4 * bending)
 }
 
 impl Pair {
@@ -193,15 +178,13 @@ fn series(square: f64) -> [f64; 2] {
 }
 
 impl Elastic {
-    /// ε, Γ_y, Γ_z and κ.
+    /// Γ and κ.
     pub(super) fn strains(&self, s: &Invariants) -> [f64; 6] {
         let (g, a) = (Vec3::new(s[0], s[1], s[2]), Vec3::new(s[3], s[4], s[5]));
         let functions = Functions::of(a.norm_squared());
         let gamma = g * functions.inverse[0] + a * (functions.h[0] * a.dot(&g));
         let kappa = a * (functions.f[0] / self.length);
-        let [y, z] = self.extends;
-        let extension = gamma.x - 1.0 + y * gamma.y * gamma.y + z * gamma.z * gamma.z;
-        [extension, gamma.y, gamma.z, kappa.x, kappa.y, kappa.z]
+        [gamma.x - 1.0, gamma.y, gamma.z, kappa.x, kappa.y, kappa.z]
     }
 
     /// Derivatives of the strains by the invariants.
@@ -220,12 +203,6 @@ impl Elastic {
                 slopes[i][j] = by_g[(i, j)];
                 slopes[i][3 + j] = by_a[(i, j)];
                 slopes[3 + i][3 + j] = turn[(i, j)];
-            }
-        }
-        let gamma = g * inverse[0] + a * (h[0] * along);
-        for (across, c) in [1, 2].into_iter().zip(self.extends) {
-            for j in 0..6 {
-                slopes[0][j] += 2.0 * c * gamma[across] * slopes[across][j];
             }
         }
         slopes
@@ -267,7 +244,7 @@ impl Elastic {
         sum
     }
 
-    /// ∂²U/∂s², but for terms of the order of a² times the forces in the section.
+    /// ∂²U/∂s² without the second derivatives of the strains.
     pub(super) fn tangent(&self, s: &Invariants) -> Matrix6 {
         let slopes = self.slopes(s);
         let mut k = [[0.0; 6]; 6];
@@ -278,58 +255,7 @@ impl Elastic {
                 }
             }
         }
-        self.add_of_stresses(s, &self.stresses(s), &mut k);
         k
-    }
-}
-
-impl Elastic {
-    /// Forces and moments that do the work of Γ and κ, of those of ε, Γ_y, Γ_z and κ: the normal force has a part across, as the chord has.
-    pub(super) fn across_the_chord(&self, strains: &[f64; 6], stresses: &[f64; 6]) -> [f64; 6] {
-        let mut all = *stresses;
-        for (across, c) in [1, 2].into_iter().zip(self.extends) {
-            all[across] += 2.0 * c * stresses[0] * strains[across];
-        }
-        all
-    }
-
-    /// The chord over L in the axes in the middle, e₁ + Γ.
-    pub(super) fn chord(&self, strains: &[f64; 6]) -> Vec3 {
-        let [y, z] = self.extends;
-        let [extension, along_y, along_z, ..] = *strains;
-        let projected = extension - y * along_y * along_y - z * along_z * along_z;
-        Vec3::new(1.0 + projected, along_y, along_z)
-    }
-
-    /// Adds what forces and moments in the section make of the second derivatives of the strains, but for terms of the order a²: without them a tension above
-    /// 4 E I/L² makes a matrix that is not positive definite.
-    fn add_of_stresses(&self, s: &Invariants, stresses: &[f64; 6], k: &mut Matrix6) {
-        let (g, a) = (Vec3::new(s[0], s[1], s[2]), Vec3::new(s[3], s[4], s[5]));
-        let Functions { f, inverse, h } = Functions::of(a.norm_squared());
-        let (strains, slopes) = (self.strains(s), self.slopes(s));
-        let all = self.across_the_chord(&strains, stresses);
-        let n = Vec3::new(all[0], all[1], all[2]);
-        for (across, c) in [1, 2].into_iter().zip(self.extends) {
-            let factor = 2.0 * c * stresses[0];
-            let row = &slopes[across];
-            for i in 0..6 {
-                for j in 0..6 {
-                    k[i][j] += self.length * factor * row[i] * row[j];
-                }
-            }
-        }
-        let m = Vec3::new(stresses[3], stresses[4], stresses[5]);
-        let (one, both) = (Mat3::identity(), |u: &Vec3, v: &Vec3| u * v.transpose());
-        let mixed = both(&n, &a) * (2.0 * inverse[1]) + (both(&a, &n) + one * n.dot(&a)) * h[0];
-        let turned = one * (2.0 * inverse[1] * n.dot(&g)) + (both(&n, &g) + both(&g, &n)) * h[0];
-        let bent = (one * m.dot(&a) + both(&m, &a) + both(&a, &m)) * (2.0 * f[1] / self.length);
-        for i in 0..3 {
-            for j in 0..3 {
-                k[i][3 + j] += self.length * mixed[(i, j)];
-                k[3 + j][i] += self.length * mixed[(i, j)];
-                k[3 + i][3 + j] += self.length * (turned + bent)[(i, j)];
-            }
-        }
     }
 }
 
@@ -359,12 +285,8 @@ impl Elastic {
         0.5 * self.length * parts.sum::<f64>()
     }
 
-    /// [`Elastic::tangent`] with these forces and moments in the section, and this tangent of extension and bending.
-    pub(super) fn tangent_with(
-        &self,
-        s: &Invariants,
-        (stresses, flowing): (&[f64; 6], &[Strains; 3]),
-    ) -> Matrix6 {
+    /// [`Elastic::tangent`] with this tangent of extension and bending.
+    pub(super) fn tangent_with(&self, s: &Invariants, flowing: &[Strains; 3]) -> Matrix6 {
         let slopes = self.slopes(s);
         let mut moduli = [[0.0; 6]; 6];
         for (i, c) in self.stiffness.into_iter().enumerate() {
@@ -385,7 +307,6 @@ impl Elastic {
                 }
             }
         }
-        self.add_of_stresses(s, stresses, &mut k);
         k
     }
 }
@@ -400,7 +321,6 @@ mod tests {
     const ELEMENT: Elastic = Elastic {
         length: 0.1,
         stiffness: [1e4, 4e3, 5e3, 1.0, 2.0, 3.0],
-        extends: [0.6, 0.3],
     };
 
     fn vector(random: &mut Random, size: f64) -> Vec3 {
@@ -433,8 +353,7 @@ mod tests {
             let (axis, angle) = (turn.normalize(), 2.0 * (0.5 * turn.norm()).atan());
             let psi = axis * angle;
             let half = Rotation::cayley(&(axis * Rotation::increment(0.5 * angle))).matrix();
-            let mut gamma = (pair.directors[0] * half).tr_mul(&pair.way) / 0.1 - Vec3::x();
-            gamma.x += 0.6 * gamma.y * gamma.y + 0.3 * gamma.z * gamma.z;
+            let gamma = (pair.directors[0] * half).tr_mul(&pair.way) / 0.1 - Vec3::x();
             for i in 0..3 {
                 assert!((found[i] - gamma[i]).abs() < 1e-13);
                 assert!((found[3 + i] - psi[i] / 0.1).abs() < 1e-12);
@@ -451,37 +370,6 @@ mod tests {
                     // rounding over the step, and its square times third derivatives
                     let slope = (after[i] - before[i]) / 2e-6;
                     assert!((slope - slopes[i][j]).abs() < 1e-7 * (1.0 + slope.abs()));
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_second_derivative_of_the_energy_is_right_under_large_forces() {
-        let mut random = Random(6);
-        for size in [1e-6, 1e-3] {
-            let turn = vector(&mut random, size);
-            let mut pair = turned(&mut random, &turn);
-            // a tension and shear forces of a tenth of the stiffness
-            pair.way *= 1.1;
-            pair.way += vector(&mut random, 1e-2);
-            let s = pair.invariants(0.1);
-            let tangent = ELEMENT.tangent(&s);
-            let most = tangent
-                .iter()
-                .flatten()
-                .fold(0.0, |most: f64, k| most.max(k.abs()));
-            for j in 0..6 {
-                let at = |step: f64| {
-                    let mut s = s;
-                    s[j] += step;
-                    ELEMENT.gradient(&s)
-                };
-                let (after, before) = (at(1e-5), at(-1e-5));
-                for i in 0..6 {
-                    // third derivatives times the square of the step, and a² times the forces
-                    let slope = (after[i] - before[i]) / 2e-5;
-                    assert!((slope - tangent[i][j]).abs() < 1e-5 * most, "{i} {j}");
                 }
             }
         }

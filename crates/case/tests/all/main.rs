@@ -8,7 +8,6 @@ mod allowables;
 mod assumed;
 mod bolts;
 mod bystanders;
-mod capstan;
 mod checks;
 mod compare;
 mod damaged;
