@@ -3,7 +3,7 @@
 use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
-use crate::closings::{Closing, TREMBLE, Waiting, chatter};
+use crate::chatter::{Closing, TREMBLE, Waiting, chatter};
 use crate::impact::{Given, Impact, NoRestitution, OpenImpact};
 use crate::report::ContactReport;
 use crate::small::{Largest, Smallness};

@@ -5,7 +5,7 @@ use carom_contact::law::Status;
 use carom_ranks::{Message, Ranks};
 
 use super::halo::{Halo, With, by_rank};
-use crate::closings::Waiting;
+use crate::chatter::Waiting;
 use crate::march::{Scope, Watched};
 use crate::of_contact::OfContact;
 use crate::records::{ContactRecord, Records};
