@@ -12,7 +12,8 @@
 //! - The same rod with a mass of three different moments of inertia on its second node, whose moment W × J W is of the size of what bends it.
 //! - A flexible pendulum in the plane that falls from the horizontal: kinetic and strain energy are the work of gravity.
 //!
-//! Tolerances of the last three: what the iterations leave, 1e-12 of the forces in each of 1e5 steps, adds up to less than 1e-8.
+//! Tolerances of the last three: what the iterations leave, 1e-13 of the forces in each of 1e5 steps, adds up to 1e-8 where it is of one sign.
+//! (With 1e-12 the rod with a disc loses 1.7e-8 in 2e4 steps, the sum of its tolerances; with 1e-13 1e-12.)
 
 use carom_bodies::{
     BeamSection, BeamTheory, DiscreteKind, DiscreteSpec, Kinematics, MassKind, PointMass,
@@ -148,7 +149,7 @@ fn bend(elements: usize, steps: u64) -> Result<Vec<Row>, Error> {
 }
 
 /// Residual of the iterations over the largest of the forces that balance.
-const TOLERANCE: f64 = 1e-12;
+const TOLERANCE: f64 = 1e-13;
 
 const CONSERVING: Scheme = Scheme::EnergyMomentum(EnergyMomentum {});
 

@@ -29,7 +29,7 @@ use carom_algebra::unknowns::Unknowns;
 
 use super::element::EndWeights;
 use super::section::BeamTheory;
-use super::strain::{Elastic, Invariants, Matrix6, Pair};
+use super::strain::{Elastic, Invariants, Matrix6, Pair, extension};
 use super::{Beam, SectionForces, SectionStress};
 use crate::flowing::{FibreSection, Flowing};
 use crate::turning::{balanced, spatial};
@@ -57,6 +57,30 @@ struct Ends {
     /// R at the start of the step, and θ since.
     starts: [Mat3; 2],
     increments: [Vec3; 2],
+}
+
+/// The invariants of an element at the end of a step, and at its start where forces are taken between both.
+struct Way {
+    from: Option<Invariants>,
+    to: Invariants,
+}
+
+impl Way {
+    /// D.
+    fn force(&self, elastic: &Elastic) -> Invariants {
+        match &self.from {
+            None => elastic.gradient(&self.to),
+            Some(from) => elastic.mean_gradient([from, &self.to]),
+        }
+    }
+
+    /// Its derivative by the invariants at the end, twice that of a mean.
+    fn tangent(&self, elastic: &Elastic) -> Matrix6 {
+        match &self.from {
+            None => elastic.tangent(&self.to),
+            Some(from) => elastic.mean_tangent([from, &self.to]),
+        }
+    }
 }
 
 impl LargeBeam {
@@ -100,8 +124,13 @@ impl LargeBeam {
                 }
             };
             let [along_y, along_z] = properties.shear_areas;
+            let bending = |area: f64, second: f64| {
+                let bends = length * length / (12.0 * young * second);
+                extension(bends * across(area, second))
+            };
             Elastic {
                 length,
+                extends: [bending(along_y, about_z), bending(along_z, about_y)],
                 stiffness: [
                     young * properties.area,
                     across(along_y, about_z),
@@ -183,24 +212,18 @@ impl LargeBeam {
         ends.pair.invariants(self.elements[element].length)
     }
 
-    /// Where forces are taken in an element, its configuration and D there.
-    fn acting(&self, element: usize, at: &Placement) -> (Ends, Pair, Invariants) {
+    /// Where forces are taken in an element: the state of its nodes, the configuration, and the invariants between which D is taken.
+    fn acting(&self, element: usize, at: &Placement) -> (Ends, Pair, Way) {
         let end = self.ends(element, at.frames, at.u);
-        let s = self.invariants(element, &end);
-        match at.from {
-            None => {
-                let d = self.elements[element].gradient(&s);
-                let pair = end.pair;
-                (end, pair, d)
-            }
-            Some(from) => {
-                let start = self.ends(element, at.frames, from);
-                let before = self.invariants(element, &start);
-                let d = self.elements[element].mean_gradient([&before, &s]);
-                let pair = start.pair.mean(&end.pair);
-                (end, pair, d)
-            }
-        }
+        let to = self.invariants(element, &end);
+        let Some(from) = at.from else {
+            let pair = end.pair;
+            return (end, pair, Way { from: None, to });
+        };
+        let start = self.ends(element, at.frames, from);
+        let from = Some(self.invariants(element, &start));
+        let pair = start.pair.mean(&end.pair);
+        (end, pair, Way { from, to })
     }
 
     /// Adds internal forces and W × J W, writes the history; see [`Body::force`](crate::Body::force).
@@ -218,10 +241,10 @@ impl LargeBeam {
             let length = self.elements[element].length;
             let (end, pair, d) = match &self.section {
                 None => {
-                    let (end, pair, d) = self.acting(element, at);
-                    let s = self.invariants(element, &end);
-                    stored.strain += self.elements[element].energy(&s);
-                    (end, pair, d)
+                    let (end, pair, way) = self.acting(element, at);
+                    let elastic = &self.elements[element];
+                    stored.strain += elastic.energy(&way.to);
+                    (end, pair, way.force(elastic))
                 }
                 Some(section) => {
                     let range = self.history_of(section, element);
@@ -248,7 +271,7 @@ impl LargeBeam {
         kept * element..kept * (element + 1)
     }
 
-    /// [`LargeBeam::acting`] at the end of a step in which the section flows; adds its energies.
+    /// State of the nodes, configuration and D at the end of a step in which the section flows; adds its energies.
     fn flow(
         &self,
         section: &FibreSection,
@@ -269,22 +292,23 @@ impl LargeBeam {
         (end, pair, d)
     }
 
-    /// [`LargeBeam::acting`], and ∂D/∂s there.
+    /// State of the nodes, configuration and D of [`LargeBeam::acting`], and the derivative of D by the invariants at the end, twice that of a mean.
     fn linearised(&self, element: usize, at: &Placement) -> (Ends, Pair, Invariants, Matrix6) {
         let elastic = &self.elements[element];
         let Some(section) = &self.section else {
-            let (end, pair, d) = self.acting(element, at);
-            let inner = elastic.tangent(&pair.invariants(elastic.length));
-            return (end, pair, d, inner);
+            let (end, pair, way) = self.acting(element, at);
+            return (end, pair, way.force(elastic), way.tangent(elastic));
         };
         let end = self.ends(element, at.frames, at.u);
         let s = self.invariants(element, &end);
         let strains = elastic.strains(&s);
         let old = &at.old[self.history_of(section, element)];
         let (forces, tangent) = section.tangent(&Elastic::flowing(&strains), at.dt, old);
-        let d = elastic.gradient_of(&s, &elastic.stresses_with(&strains, &forces));
+        let stresses = elastic.stresses_with(&strains, &forces);
+        let d = elastic.gradient_of(&s, &stresses);
         let pair = end.pair;
-        (end, pair, d, elastic.tangent_with(&s, &tangent))
+        let tangent = elastic.tangent_with(&s, (&stresses, &tangent));
+        (end, pair, d, tangent)
     }
 
     /// Numbers that its fibres keep from one step to the next.
@@ -507,10 +531,11 @@ impl LargeBeam {
                     elastic.stresses_with(&strains, &flowing)
                 }
             };
+            let strains = elastic.strains(&s);
+            let f = elastic.across_the_chord(&strains, &f);
             let (force, moment) = (Vec3::new(f[0], f[1], f[2]), Vec3::new(f[3], f[4], f[5]));
             // m' + x' × n = 0 from the middle to the ends
-            let [stretch, along_y, along_z, ..] = elastic.strains(&s);
-            let half = Vec3::new(1.0 + stretch, along_y, along_z) * (0.5 * elastic.length);
+            let half = elastic.chord(&strains) * (0.5 * elastic.length);
             let lever = half.cross(&force);
             SectionForces {
                 force: force.into(),

@@ -8,6 +8,15 @@
 //! `Γ = g/c + h a (a·g) - e₁`, `κ = f a/L`, `c = cos(φ/2)`, `h = -1/(4 c³ (1 + c))`, `f = φ/sin φ`.
 //!
 //! κ is exact for any rotation below 90° between the nodes. All invariants are bilinear in places and directors.
+//!
+//! Where the stiffness across the axis is for the most part that of the bending between the nodes, `12 E I/L²`, Γ_y and Γ_z are angles between the section
+//! and the chord, and the section in the middle is no normal of the axis. The axis between the nodes is longer than the projection of the chord
+//! on that normal. With β the part of Γ_y that is bending, the shape of a cubic with these angles at both ends has the extension
+//!
+//! `ε = Γ_x + c_y Γ_y² + c_z Γ_z²`, `c = β - 2 β²/5`.
+//!
+//! Without it a tension N above the stiffness across the axis would turn the section away from the chord: cables of elements longer than
+//! √(12 E I/N) would be unstable. Pure shear (β = 0) has the normal force along the normal of the section, as Reissner's beam.
 
 use carom_algebra::tensor::{Mat3, Vec3};
 
@@ -37,11 +46,17 @@ pub(super) struct Pair {
     pub(super) directors: [Mat3; 2],
 }
 
-/// An element: its length (m) and the stiffness of each strain, N and N m².
+/// An element: its length (m), the stiffness of each strain, N and N m², and c_y and c_z.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elastic {
     pub(super) length: f64,
     pub(super) stiffness: [f64; 6],
+    pub(super) extends: [f64; 2],
+}
+
+/// c of a part β of bending.
+pub(super) fn extension(bending: f64) -> f64 {
+    bending * (1.0 - 0.4 * bending)
 }
 
 impl Pair {
@@ -132,59 +147,77 @@ impl Pair {
     }
 }
 
-/// f, f', c, 1/c's derivative, h, h', all by σ = a·a.
+/// f, 1/c and h, each with its first and second derivative by σ = a·a.
 struct Functions {
-    f: [f64; 2],
-    inverse: [f64; 2],
-    h: [f64; 2],
+    f: [f64; 3],
+    inverse: [f64; 3],
+    h: [f64; 3],
 }
 
 impl Functions {
     fn of(square: f64) -> Functions {
         let cosine = (1.0 - square).sqrt();
-        let c = (0.5 * (1.0 + cosine)).sqrt();
         let f = match square < SMALL {
             true => series(square),
             false => {
                 let sine = square.sqrt();
                 let f = sine.asin() / sine;
-                [f, (1.0 / cosine - f) / (2.0 * square)]
+                let slope = (1.0 / cosine - f) / (2.0 * square);
+                let second = (0.5 / cosine.powi(3) - 3.0 * slope) / (2.0 * square);
+                [f, slope, second]
             }
         };
+        // of c² = (1 + cos φ)/2
+        let c = (0.5 * (1.0 + cosine)).sqrt();
         let slope = -1.0 / (8.0 * c * cosine);
-        let both = c.powi(3) * (1.0 + c);
+        let second = (slope * cosine - 0.5 * c / cosine) / (8.0 * (c * cosine).powi(2));
+        let by_c = |value: f64, by_c: f64, twice: f64| {
+            [value, by_c * slope, twice * slope * slope + by_c * second]
+        };
+        let (both, both_c, both_cc) = (
+            c.powi(3) * (1.0 + c),
+            3.0 * c * c + 4.0 * c.powi(3),
+            6.0 * c + 12.0 * c * c,
+        );
         Functions {
             f,
-            inverse: [1.0 / c, -slope / (c * c)],
-            h: [
+            inverse: by_c(1.0 / c, -1.0 / (c * c), 2.0 / c.powi(3)),
+            h: by_c(
                 -0.25 / both,
-                0.25 * (3.0 * c * c + 4.0 * c.powi(3)) / (both * both) * slope,
-            ],
+                0.25 * both_c / both.powi(2),
+                0.25 * both_cc / both.powi(2) - 0.5 * both_c.powi(2) / both.powi(3),
+            ),
         }
     }
 }
 
-/// asin(r)/r and its derivative by r²: Σ (2k)!/(4^k k!² (2k + 1)) r^2k.
-fn series(square: f64) -> [f64; 2] {
-    let (mut value, mut slope, mut factor, mut power) = (1.0, 0.0, 1.0, 1.0);
+/// asin(r)/r and its derivatives by r²: Σ (2k)!/(4^k k!² (2k + 1)) r^2k.
+fn series(square: f64) -> [f64; 3] {
+    let mut sum = [1.0, 0.0, 0.0];
+    let (mut factor, mut powers) = (1.0, [1.0, 0.0]);
     for k in 1..10 {
         let n = f64::from(k);
         factor *= (2.0 * n - 1.0) / (2.0 * n);
-        slope += factor / (2.0 * n + 1.0) * n * power;
-        power *= square;
-        value += factor / (2.0 * n + 1.0) * power;
+        let own = factor / (2.0 * n + 1.0);
+        // r^(2k - 2) and r^(2k - 4)
+        sum[2] += own * n * (n - 1.0) * powers[1];
+        sum[1] += own * n * powers[0];
+        powers = [powers[0] * square, powers[0]];
+        sum[0] += own * powers[0];
     }
-    [value, slope]
+    sum
 }
 
 impl Elastic {
-    /// Γ and κ.
+    /// ε, Γ_y, Γ_z and κ.
     pub(super) fn strains(&self, s: &Invariants) -> [f64; 6] {
         let (g, a) = (Vec3::new(s[0], s[1], s[2]), Vec3::new(s[3], s[4], s[5]));
         let functions = Functions::of(a.norm_squared());
         let gamma = g * functions.inverse[0] + a * (functions.h[0] * a.dot(&g));
         let kappa = a * (functions.f[0] / self.length);
-        [gamma.x - 1.0, gamma.y, gamma.z, kappa.x, kappa.y, kappa.z]
+        let [y, z] = self.extends;
+        let extension = gamma.x - 1.0 + y * gamma.y * gamma.y + z * gamma.z * gamma.z;
+        [extension, gamma.y, gamma.z, kappa.x, kappa.y, kappa.z]
     }
 
     /// Derivatives of the strains by the invariants.
@@ -203,6 +236,12 @@ impl Elastic {
                 slopes[i][j] = by_g[(i, j)];
                 slopes[i][3 + j] = by_a[(i, j)];
                 slopes[3 + i][3 + j] = turn[(i, j)];
+            }
+        }
+        let gamma = g * inverse[0] + a * (h[0] * along);
+        for (across, c) in [1, 2].into_iter().zip(self.extends) {
+            for j in 0..6 {
+                slopes[0][j] += 2.0 * c * gamma[across] * slopes[across][j];
             }
         }
         slopes
@@ -244,7 +283,20 @@ impl Elastic {
         sum
     }
 
-    /// ∂²U/∂s² without the second derivatives of the strains.
+    /// Twice the derivative of [`Elastic::mean_gradient`] by the end of the way: the mean of 2 t ∂²U/∂s².
+    pub(super) fn mean_tangent(&self, [from, to]: [&Invariants; 2]) -> Matrix6 {
+        let mut sum = [[0.0; 6]; 6];
+        for (t, weight) in GAUSS {
+            let s = [0, 1, 2, 3, 4, 5].map(|i| from[i] + t * (to[i] - from[i]));
+            let own = self.tangent(&s);
+            for (sum, own) in sum.as_flattened_mut().iter_mut().zip(own.as_flattened()) {
+                *sum += 2.0 * t * weight * own;
+            }
+        }
+        sum
+    }
+
+    /// ∂²U/∂s².
     pub(super) fn tangent(&self, s: &Invariants) -> Matrix6 {
         let slopes = self.slopes(s);
         let mut k = [[0.0; 6]; 6];
@@ -255,7 +307,73 @@ impl Elastic {
                 }
             }
         }
+        self.add_of_stresses(s, &self.stresses(s), &mut k);
         k
+    }
+}
+
+impl Elastic {
+    /// Forces and moments that do the work of Γ and κ, of those of ε, Γ_y, Γ_z and κ: the normal force has a part across, as the chord has.
+    pub(super) fn across_the_chord(&self, strains: &[f64; 6], stresses: &[f64; 6]) -> [f64; 6] {
+        let mut all = *stresses;
+        for (across, c) in [1, 2].into_iter().zip(self.extends) {
+            all[across] += 2.0 * c * stresses[0] * strains[across];
+        }
+        all
+    }
+
+    /// The chord over L in the axes in the middle, e₁ + Γ.
+    pub(super) fn chord(&self, strains: &[f64; 6]) -> Vec3 {
+        let [y, z] = self.extends;
+        let [extension, along_y, along_z, ..] = *strains;
+        let projected = extension - y * along_y * along_y - z * along_z * along_z;
+        Vec3::new(1.0 + projected, along_y, along_z)
+    }
+
+    /// Adds what forces and moments in the section make of the second derivatives of the strains: without them a tension above 4 E I/L² makes a matrix that is not
+    /// positive definite.
+    fn add_of_stresses(&self, s: &Invariants, stresses: &[f64; 6], k: &mut Matrix6) {
+        let (strains, slopes) = (self.strains(s), self.slopes(s));
+        for (across, c) in [1, 2].into_iter().zip(self.extends) {
+            let factor = 2.0 * self.length * c * stresses[0];
+            let row = &slopes[across];
+            for i in 0..6 {
+                for j in 0..6 {
+                    k[i][j] += factor * row[i] * row[j];
+                }
+            }
+        }
+        let all = self.across_the_chord(&strains, stresses);
+        let [mixed, own] = self.second_derivatives(s, &all);
+        for i in 0..3 {
+            for j in 0..3 {
+                k[i][3 + j] += mixed[(i, j)];
+                k[3 + j][i] += mixed[(i, j)];
+                k[3 + i][3 + j] += own[(i, j)];
+            }
+        }
+    }
+
+    /// Second derivatives of L (n·Γ + m·κ) by g and a, and by a and a, for given n and m (Γ is linear in g).
+    fn second_derivatives(&self, s: &Invariants, all: &[f64; 6]) -> [Mat3; 2] {
+        let (g, a) = (Vec3::new(s[0], s[1], s[2]), Vec3::new(s[3], s[4], s[5]));
+        let (n, m) = (
+            Vec3::new(all[0], all[1], all[2]),
+            Vec3::new(all[3], all[4], all[5]),
+        );
+        let Functions { f, inverse, h } = Functions::of(a.norm_squared());
+        let [n_a, n_g, a_g, m_a] = [n.dot(&a), n.dot(&g), a.dot(&g), m.dot(&a)];
+        let (one, twice) = (Mat3::identity(), a * a.transpose());
+        let both = |u: &Vec3, v: &Vec3| u * v.transpose() + v * u.transpose();
+        let mixed = n * a.transpose() * (2.0 * inverse[1])
+            + twice * (2.0 * h[1] * n_a)
+            + (a * n.transpose() + one * n_a) * h[0];
+        let by_a = one * (2.0 * (inverse[1] * n_g + h[1] * n_a * a_g))
+            + twice * (4.0 * (inverse[2] * n_g + h[2] * n_a * a_g))
+            + both(&a, &(n * a_g + g * n_a)) * (2.0 * h[1])
+            + both(&n, &g) * h[0];
+        let bent = (one * m_a + both(&a, &m)) * (2.0 * f[1]) + twice * (4.0 * f[2] * m_a);
+        [mixed * self.length, by_a * self.length + bent]
     }
 }
 
@@ -285,8 +403,12 @@ impl Elastic {
         0.5 * self.length * parts.sum::<f64>()
     }
 
-    /// [`Elastic::tangent`] with this tangent of extension and bending.
-    pub(super) fn tangent_with(&self, s: &Invariants, flowing: &[Strains; 3]) -> Matrix6 {
+    /// [`Elastic::tangent`] with these forces and moments in the section, and this tangent of extension and bending.
+    pub(super) fn tangent_with(
+        &self,
+        s: &Invariants,
+        (stresses, flowing): (&[f64; 6], &[Strains; 3]),
+    ) -> Matrix6 {
         let slopes = self.slopes(s);
         let mut moduli = [[0.0; 6]; 6];
         for (i, c) in self.stiffness.into_iter().enumerate() {
@@ -307,6 +429,7 @@ impl Elastic {
                 }
             }
         }
+        self.add_of_stresses(s, stresses, &mut k);
         k
     }
 }
@@ -321,6 +444,7 @@ mod tests {
     const ELEMENT: Elastic = Elastic {
         length: 0.1,
         stiffness: [1e4, 4e3, 5e3, 1.0, 2.0, 3.0],
+        extends: [0.6, 0.3],
     };
 
     fn vector(random: &mut Random, size: f64) -> Vec3 {
@@ -353,7 +477,8 @@ mod tests {
             let (axis, angle) = (turn.normalize(), 2.0 * (0.5 * turn.norm()).atan());
             let psi = axis * angle;
             let half = Rotation::cayley(&(axis * Rotation::increment(0.5 * angle))).matrix();
-            let gamma = (pair.directors[0] * half).tr_mul(&pair.way) / 0.1 - Vec3::x();
+            let mut gamma = (pair.directors[0] * half).tr_mul(&pair.way) / 0.1 - Vec3::x();
+            gamma.x += 0.6 * gamma.y * gamma.y + 0.3 * gamma.z * gamma.z;
             for i in 0..3 {
                 assert!((found[i] - gamma[i]).abs() < 1e-13);
                 assert!((found[3 + i] - psi[i] / 0.1).abs() < 1e-12);
@@ -371,6 +496,62 @@ mod tests {
                     let slope = (after[i] - before[i]) / 2e-6;
                     assert!((slope - slopes[i][j]).abs() < 1e-7 * (1.0 + slope.abs()));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn the_second_derivative_of_the_energy_is_right_under_large_forces() {
+        let mut random = Random(6);
+        for size in [1e-6, 1e-3, 0.1, 0.7] {
+            let turn = vector(&mut random, size);
+            let mut pair = turned(&mut random, &turn);
+            // a tension and shear forces of a tenth of the stiffness
+            pair.way *= 1.1;
+            pair.way += vector(&mut random, 1e-2);
+            let s = pair.invariants(0.1);
+            let tangent = ELEMENT.tangent(&s);
+            let most = tangent
+                .iter()
+                .flatten()
+                .fold(0.0, |most: f64, k| most.max(k.abs()));
+            for j in 0..6 {
+                let at = |step: f64| {
+                    let mut s = s;
+                    s[j] += step;
+                    ELEMENT.gradient(&s)
+                };
+                let (after, before) = (at(1e-5), at(-1e-5));
+                for i in 0..6 {
+                    // third derivatives of all, some hundred, times the square of the step, and rounding over the step
+                    let slope = (after[i] - before[i]) / 2e-5;
+                    assert!((slope - tangent[i][j]).abs() < 1e-8 * most, "{i} {j}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_derivative_of_the_mean_gradient_is_right() {
+        let mut random = Random(7);
+        let [from, to] = [0.3, 0.5].map(|size| {
+            let turn = vector(&mut random, size);
+            turned(&mut random, &turn).invariants(0.1)
+        });
+        let tangent = ELEMENT.mean_tangent([&from, &to]);
+        let all = tangent.as_flattened().iter();
+        let most = all.fold(0.0, |most: f64, k| most.max(k.abs()));
+        for j in 0..6 {
+            let at = |step: f64| {
+                let mut to = to;
+                to[j] += step;
+                ELEMENT.mean_gradient([&from, &to])
+            };
+            let (after, before) = (at(1e-5), at(-1e-5));
+            for i in 0..6 {
+                // as above; the rule of Gauss is the same in both
+                let slope = (after[i] - before[i]) / 1e-5;
+                assert!((slope - tangent[i][j]).abs() < 1e-8 * most, "{i} {j}");
             }
         }
     }

@@ -8,6 +8,7 @@ mod allowables;
 mod assumed;
 mod bolts;
 mod bystanders;
+mod capstan;
 mod checks;
 mod compare;
 mod damaged;
