@@ -467,12 +467,21 @@ impl Body {
         }
     }
 
-    /// The same for the elements that join their nodes in all directions: none of discrete elements, and of beams those that are not tightened
-    /// ([`Body::each_spring`] has what these hold).
+    /// System numbers of nodes whose unknowns its matrix couples: those of each element, and of each layer that is tightened.
+    pub fn each_clique(&self, visit: &mut dyn FnMut(&[u32])) {
+        self.each_element(visit);
+        if let Body::Solid(solid) = self {
+            solid.layers.each_clique(visit);
+        }
+    }
+
+    /// The same for the elements that join their nodes in all directions: none of discrete elements, of beams those that are not tightened, and of solids both
+    /// sides of layers that are ([`Body::each_spring`] has what these hold).
     pub fn each_joining_element(&self, visit: &mut dyn FnMut(&[u32])) {
         match self {
             Body::Discrete(_) => {}
             Body::Beam(beam) => beam.each_joining_element(visit),
+            Body::Solid(solid) => solid.each_joining_element(visit),
             other => other.each_element(visit),
         }
     }
@@ -482,6 +491,7 @@ impl Body {
         match self {
             Body::Beam(beam) => beam.bolts(),
             Body::Discrete(discrete) => discrete.bolts(),
+            Body::Solid(solid) => solid.layers.bolts(),
             _ => &[],
         }
     }
@@ -551,6 +561,7 @@ impl Body {
         match self {
             Body::Beam(beam) => beam.each_spring(visit),
             Body::Discrete(discrete) => discrete.each_spring(visit),
+            Body::Solid(solid) => solid.layers.each_row(visit),
             _ => {}
         }
     }

@@ -19,6 +19,7 @@ mod frequency;
 mod gather;
 mod gyroscopic;
 mod kinematics;
+mod layers;
 mod locking;
 mod nodes;
 mod pretension;
@@ -57,6 +58,7 @@ pub use finite::{
 };
 pub use flowing::Fibre;
 pub use kinematics::{Kinematics, MassKind};
+pub use layers::TightenedLayer;
 pub use locking::Bending;
 pub use pretension::{Bolt, TightenedCell};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};

@@ -10,6 +10,7 @@ use crate::body::Body;
 use crate::chunk::Chunk;
 use crate::finite::{Looks, Placement, Seen, Stored};
 use crate::gather::Gather;
+use crate::layers::Layers;
 use crate::solid::Solid;
 use crate::weights::ChunkWeights;
 use crate::{Error, Scratch};
@@ -294,6 +295,8 @@ impl Solid {
             most_nodes: self.most_nodes,
             viscosity: self.viscosity,
             added_mass: 0.0,
+            // ranks take no static stage, and what it tightens
+            layers: Layers::default(),
         }
     }
 }

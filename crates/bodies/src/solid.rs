@@ -15,13 +15,14 @@ use crate::continuum;
 use crate::finite::{BulkViscosity, Finite, Formulation, Shape};
 use crate::flowing::{Fibre, FibreSection, Flowing, Point};
 use crate::gather::Gather;
+use crate::layers::Layers;
 use crate::nodes::Nodes;
 use crate::release::Release;
 use crate::scaling::MassScaling;
 use crate::scratch::Scratch;
 use crate::shell::{Ply, ShellSection};
 use crate::weights::CellWeights;
-use crate::{Error, TightenedCell};
+use crate::{Error, TightenedCell, TightenedLayer};
 use crate::{Kinematics, size};
 
 /// What a solid or a bar is made of.
@@ -55,6 +56,8 @@ pub struct BodySpec {
     pub nodal_thickness: Option<Vec<f64>>,
     /// Cells of beams that a static stage tightens.
     pub tightened: Vec<TightenedCell>,
+    /// Layers of solids at small strain that it tightens.
+    pub layers: Vec<TightenedLayer>,
 }
 
 impl BodySpec {
@@ -80,6 +83,7 @@ impl BodySpec {
             plies: Vec::new(),
             nodal_thickness: None,
             tightened: Vec::new(),
+            layers: Vec::new(),
         }
     }
 
@@ -117,6 +121,8 @@ pub struct Solid {
     pub(crate) added_mass: f64,
     /// How the forces of chunks are added.
     pub(crate) gather: Gather,
+    /// Layers that a static stage tightens.
+    pub(crate) layers: Layers,
 }
 
 impl Solid {
@@ -181,6 +187,7 @@ impl Solid {
             finite: is_finite(&spec).then(|| finite(spec.material)),
             flowing: None,
             dim: mesh.dim,
+            layers: Layers::default(),
         };
         body.set_viscosity(mesh, None);
         if let Some(scaling) = &spec.scaling {
@@ -201,6 +208,9 @@ impl Solid {
         if spec.weights.is_some() {
             body.check_mass(mesh)?;
             body.check_stiffness()?;
+        }
+        if body.is_linear() {
+            body.layers = body.layers_of(&spec.layers, (&x, unknowns));
         }
         Ok(body)
     }
@@ -312,7 +322,8 @@ impl Solid {
             block.forces(self.dim, u, block_forces, block_energies);
         }
         self.gather.add(&scratch.forces, f);
-        scratch.energies.iter().sum()
+        let energy = scratch.energies.iter().sum::<f64>();
+        energy - self.layers.loosen(u, f)
     }
 
     /// Adds the lumped mass (kg) to the entries of a system vector: the row sums ∫ ρ N_a dV of linear elements, and of
@@ -360,6 +371,7 @@ impl Solid {
             }
             matrix.add_nodes(&rows, dim, (1.0, &block));
         });
+        self.layers.loosen_matrix(stiffness_factor, part, matrix);
     }
 
     /// System numbers of the nodes of each element, in the order of [`Solid::cells`].
@@ -406,6 +418,11 @@ impl Solid {
         for block in &self.blocks {
             block.stresses((self.dim, block.within(&of, first)), u, &mut out);
             first += block.len();
+        }
+        if !self.layers.bolts().is_empty() {
+            for (place, (_, stress)) in of.zip(&mut out) {
+                *stress += self.layers.kept_stress(place, history);
+            }
         }
         out
     }

@@ -61,7 +61,8 @@ pub(crate) fn facts_with(built: &Built, words: impl FnOnce(&[Approach]) -> Vec<F
             );
             if let Some(beam) = body.as_beam() {
                 facts.push(beam_fact(system, k, beam));
-                facts.extend(body.bolts().iter().map(bolt_fact));
+                let bolts = body.bolts().iter();
+                facts.extend(bolts.map(|bolt| bolt_fact(bolt, "a cell")));
             }
             facts.extend(body.as_shell().map(|shell| shell_fact(system, k, shell)));
             continue;
@@ -249,14 +250,14 @@ fn shell_fact(system: &System, body: usize, shell: &Shell) -> Fact {
     )
 }
 
-/// A line for a cell of beams that is tightened.
-fn bolt_fact(bolt: &Bolt) -> Fact {
+/// A line for a cell of beams or a section of a solid that is tightened.
+fn bolt_fact(bolt: &Bolt, what: &str) -> Fact {
     let Bolt {
         force, stiffness, ..
     } = bolt;
     fact(
         format!("pretension {}", bolt.name),
-        format!("{force:.6e} N, a cell of stiffness {stiffness:.6e} N/m"),
+        format!("{force:.6e} N, {what} of stiffness {stiffness:.6e} N/m"),
     )
 }
 

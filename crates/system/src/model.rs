@@ -205,6 +205,10 @@ impl Model {
         for cell in cells.flat_map(|body| &mut body.spec.tightened) {
             cell.tightens = true;
         }
+        let layers = model.bodies.iter_mut();
+        for layer in layers.flat_map(|body| &mut body.spec.layers) {
+            layer.tightens = true;
+        }
         for some in &mut model.discrete {
             if let DiscreteKind::Bolt(bolt) = &mut some.spec.kind {
                 bolt.tightens = true;
@@ -216,7 +220,8 @@ impl Model {
     /// Whether a static stage tightens bolts.
     fn has_bolts(&self) -> bool {
         let is_bolt = |some: &ModelDiscrete| matches!(some.spec.kind, DiscreteKind::Bolt(_));
-        let tightened = |body: &ModelBody| !body.spec.tightened.is_empty();
+        let tightened =
+            |body: &ModelBody| !body.spec.tightened.is_empty() || !body.spec.layers.is_empty();
         self.discrete.iter().any(is_bolt) || self.bodies.iter().any(tightened)
     }
 

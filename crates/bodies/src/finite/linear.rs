@@ -51,5 +51,7 @@ impl Solid {
             block.extend(element.stiffness.iter().map(|k| factor * k));
             matrix.add_block(&unknowns, &block);
         });
+        let all = 0..usize::MAX;
+        self.layers.loosen_matrix(factor, &all, matrix);
     }
 }

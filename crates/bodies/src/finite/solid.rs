@@ -30,7 +30,8 @@ impl Solid {
     pub fn history_len(&self) -> usize {
         let bars = self.flowing.as_ref().map_or(0, Flowing::history_len);
         let len = |finite: &Finite| finite.history_len(self.blocks());
-        self.finite.as_ref().map_or(bars, len)
+        let bolts = self.layers.bolts().len();
+        self.finite.as_ref().map_or(bars + bolts, len)
     }
 
     /// Writes the history of a body that nothing has happened to, [`Solid::history_len`] numbers.
@@ -64,7 +65,11 @@ impl Solid {
             };
         }
         match &self.finite {
-            None => Ok(self.linear_force(at, scratch, f)),
+            None => {
+                // what bolts keep
+                new.copy_from_slice(at.old);
+                Ok(self.linear_force(at, scratch, f))
+            }
             Some(finite) => {
                 let stored = finite.force(self.blocks(), at, new, scratch);
                 let stored = stored.map_err(|failed| self.failed(failed))?;

@@ -143,3 +143,135 @@ fn a_bolt_between_nodes_has_no_stiffness_while_it_is_tightened() {
     let kept = own.kept(&u, 2e3);
     assert!((own.tension(&u, kept) - 2e3).abs() < 1e-9);
 }
+
+/// Two cells by one by three in space, of which the middle layer is tightened across an axis that is none of coordinates.
+fn block(tightens: bool) -> (Body, Vec<[f64; 3]>, [f64; 3]) {
+    let mut mesh = carom_mesh::generate::box_("b", [0.0; 3], [0.2, 0.1, 0.3], [2, 1, 3], false);
+    let turn = carom_algebra::rotation::Rotation::cayley(&[0.3, -0.5, 0.2].into()).matrix();
+    for x in &mut mesh.nodes {
+        *x = (turn * carom_algebra::tensor::Vec3::from(*x)).into();
+    }
+    let axis: [f64; 3] = turn.column(2).into_owned().into();
+    let cells = mesh.groups["b"].elements.clone();
+    let height = |cell: &carom_mesh::ElementId| {
+        let nodes = mesh.element_nodes(*cell).iter();
+        let all = nodes.map(|&node| {
+            (0..3)
+                .map(|i| axis[i] * mesh.nodes[node as usize][i])
+                .sum::<f64>()
+        });
+        all.sum::<f64>() / 8.0
+    };
+    let layer = cells
+        .iter()
+        .filter(|cell| (height(cell) - 0.15).abs() < 0.01);
+    let layer = carom_bodies::TightenedLayer {
+        name: "bolt".into(),
+        cells: layer.copied().collect(),
+        axis,
+        force: 5e3,
+        tightens,
+    };
+    assert_eq!(layer.cells.len(), 2);
+    let mut spec = BodySpec::new("b", cells, Kinematics::Solid, STEEL);
+    spec.layers = vec![layer];
+    let count = mesh.nodes.len();
+    let unknowns = Unknowns::translations(3, count);
+    let number: Vec<u32> = (0..count as u32).collect();
+    let body = Body::new(&mesh, spec, &number, &unknowns).unwrap();
+    (body, mesh.nodes, axis)
+}
+
+#[test]
+fn a_layer_of_a_solid_that_is_tightened_lacks_its_normal_force_and_no_other() {
+    let mut random = Random(8);
+    let ([held, loose], x, n) = {
+        let [(held, x, n), (loose, ..)] = [false, true].map(block);
+        ([held, loose], x, n)
+    };
+    let [bolt] = held.bolts() else {
+        panic!("{:?}", held.bolts())
+    };
+    assert_eq!(loose.bolts(), held.bolts());
+    let u: Vec<f64> = (0..3 * x.len())
+        .map(|_| random.between(-1e-3, 1e-3))
+        .collect();
+    let mut expected = force(&loose, &u);
+    bolt.add_load(-bolt.tension(&u, 0.0), &mut expected);
+    let all = force(&held, &u);
+    let scale = all.iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+    for (found, expected) in all.iter().zip(&expected) {
+        assert!(
+            (found - expected).abs() < 1e-11 * scale,
+            "{found} {expected}"
+        );
+    }
+    // a stretch along the axis that contracts across: E A ε
+    let stretched: Vec<f64> = x
+        .iter()
+        .flat_map(|x| {
+            let along: f64 = (0..3).map(|i| n[i] * x[i]).sum();
+            (0..3).map(move |i| 1e-3 * (1.25 * along * n[i] - 0.25 * x[i]))
+        })
+        .collect();
+    let normal = bolt.tension(&stretched, 0.0);
+    assert!(
+        (normal / (2e11 * 0.02 * 1e-3) - 1.0).abs() < 1e-10,
+        "{normal}"
+    );
+    // which the loose layer does not resist: its force does the work of nothing
+    let stress = held
+        .as_solid()
+        .unwrap()
+        .stresses(&vec![0.0; u.len()], &[700.0]);
+    let kept: Vec<f64> = stress
+        .iter()
+        .map(|(volume, stress)| {
+            let n = carom_algebra::tensor::Vec3::from(n);
+            volume * n.dot(&(stress * n)) / 0.1
+        })
+        .collect();
+    assert!((kept.iter().sum::<f64>() - 700.0).abs() < 1e-8, "{kept:?}");
+}
+
+#[test]
+fn what_a_loose_layer_of_a_solid_holds_is_all_but_its_elongation_and_rigid_motions() {
+    let (body, x, n) = block(true);
+    let mut rows = Vec::new();
+    body.each_spring(&mut |row| rows.push(row.to_vec()));
+    assert_eq!(rows.len(), 5);
+    let on = |row: &[(usize, f64)], motion: &dyn Fn(&[f64; 3]) -> [f64; 3]| {
+        let terms = row.iter().map(|&(i, c)| c * motion(&x[i / 3])[i % 3]);
+        terms.sum::<f64>()
+    };
+    let middle = 0.15;
+    for row in &rows {
+        for axis in 0..3 {
+            let turn = |x: &[f64; 3]| {
+                let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
+                let mut v = [0.0; 3];
+                (v[j], v[k]) = (-x[k], x[j]);
+                v
+            };
+            assert!(on(row, &turn).abs() < 1e-12);
+            assert!(
+                on(row, &|_| std::array::from_fn(|i| f64::from(u8::from(
+                    i == axis
+                ))))
+                .abs()
+                    < 1e-12
+            );
+        }
+        let opens = |x: &[f64; 3]| {
+            let along: f64 = (0..3).map(|i| n[i] * x[i]).sum();
+            if along > middle { n } else { [0.0; 3] }
+        };
+        assert!(on(row, &opens).abs() < 1e-12);
+        // and none of them is nothing
+        assert!(row.iter().any(|(_, c)| c.abs() > 1e-3));
+    }
+    let mut joined = Vec::new();
+    body.each_joining_element(&mut |nodes| joined.push(nodes.len()));
+    // the four cells of the other layers, and both sides of this one
+    assert_eq!(joined, [8, 8, 8, 8, 6, 6]);
+}

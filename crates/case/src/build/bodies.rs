@@ -86,6 +86,7 @@ impl Builder<'_> {
                 plies,
                 nodal_thickness,
                 tightened: Vec::new(),
+                layers: Vec::new(),
             };
             let spec = self.hinged(mesh, (&path, body), spec);
             let spin = self.initial_spin(mesh, (&path, body), &spec);

@@ -18,6 +18,7 @@ mod general;
 mod held;
 mod hinged;
 mod laws;
+mod layers;
 mod levels;
 mod loads;
 mod materials;

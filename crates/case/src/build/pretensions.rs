@@ -1,4 +1,4 @@
-//! Bolts that the static stage tightens: between two nodes, or cells of beams.
+//! Bolts that the static stage tightens: between two nodes, cells of beams, or layers of solids.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -10,11 +10,12 @@ use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh};
 
 use super::Builder;
+use super::layers::solid_of;
 use crate::error::Problem;
 use crate::schema::{Ends, Pretension, Section};
 
 impl Builder<'_> {
-    /// Bolts between nodes; those of beams are told to their bodies.
+    /// Bolts between nodes; those of beams and solids are told to their bodies.
     pub(super) fn pretensions(
         &mut self,
         mesh: &mut Mesh,
@@ -28,8 +29,14 @@ impl Builder<'_> {
                 continue;
             }
             let of = (name, path.as_str(), given);
-            match &given.ends {
-                Some(ends) => bolts.extend(self.between_nodes(mesh, of, ends)),
+            if let Some(ends) = &given.ends {
+                bolts.extend(self.between_nodes(mesh, of, ends));
+                continue;
+            }
+            let on = given.on.as_ref().and_then(|on| mesh.groups.get(on));
+            let elements = on.map_or(&[][..], |group| &group.elements);
+            match solid_of(mesh, bodies, elements) {
+                Some(body) => self.across_solid((mesh, body), of, elements),
                 None => self.along_beams(mesh, bodies, of),
             }
         }
@@ -170,11 +177,11 @@ impl Builder<'_> {
         for &cell in &cells {
             let mut beams = of_beams.clone();
             let Some(body) = beams.find(|body| body.spec.cells.contains(&cell)) else {
-                let message = "a static stage tightens cells of beams; a section through a solid, or a face of one, has none";
+                let message = "a static stage tightens cells of beams, or a section across a solid";
                 let problem = Problem::new(path, message).found(on);
                 self.problems.push(problem.accepted([
                     "a group of cells of a body with `section.beam`",
-                    "the shank as a body of beams, its ends on the solids by [transition.<name>]",
+                    "a group of the cells of a solid between two planes, or of its faces in one",
                     "`ends`, `axis` and `stiffness` between two nodes",
                 ]));
                 return None;

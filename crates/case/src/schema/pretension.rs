@@ -28,6 +28,7 @@ pub struct Pretension {
     pub stiffness: Option<Stiffness>,
     /// A body of beams with small rotations: the cell in the middle of each of its lines is tightened.
     pub beam: Option<String>,
-    /// A group of cells of such beams: the cell in the middle of each line of them is tightened.
+    /// A group of cells of such beams: the cell in the middle of each line of them is tightened. Or a section of solids at small strain: a group of all cells that
+    /// the bolt has between two planes across it, or of faces of cells in one plane inside it.
     pub on: Option<String>,
 }

@@ -6,6 +6,7 @@
 mod across_zones;
 mod allowables;
 mod assumed;
+mod bolted_solids;
 mod bolts;
 mod bystanders;
 mod capstan;

@@ -9,6 +9,7 @@ use super::loads::damping_rate;
 use super::scratch::Squares;
 use super::{Driver, Which};
 use crate::error::{Error, MeshNode};
+use crate::system::Assembly;
 
 /// Where an iteration stands. Forces are told by assembly: the imbalance and its rounding are those of the one that is worst.
 #[derive(Default)]
@@ -23,9 +24,9 @@ pub(super) struct Standing {
     pub(super) scale: f64,
     /// Imbalance of the forces of all, N.
     pub(super) force: f64,
-    /// Whether no assembly has more imbalance than is tolerated.
-    pub(super) is_tolerable: bool,
-    /// Whether none has more than that or than may be rounding.
+    /// Largest imbalance of a connected part over what its own forces tolerate.
+    pub(super) excess: f64,
+    /// Whether no assembly has more imbalance than its forces and momentum tolerate, or than may be rounding.
     pub(super) is_rounding: bool,
 }
 
@@ -109,23 +110,25 @@ impl Driver {
 
     /// How far forces and contacts are from what they must be. The forces of an assembly, whose bodies may act on each other, are compared with
     /// the largest of those that balance in it, and with its momentum per step: bodies that have nothing to do with it do not make its
-    /// equations less accurate.
+    /// equations less accurate. The excess is by connected part, and without momentum, so that a light body is as accurate where a heavy
+    /// one strikes it.
     pub(super) fn standing(&mut self) -> Standing {
         self.spread();
         let mut squares = std::mem::take(&mut self.squares);
         self.square_forces(&mut squares);
         let tolerance = self.system.nonlinear.iteration.tolerance;
         let mut standing = Standing {
-            is_tolerable: true,
             is_rounding: true,
             ..Standing::default()
         };
         let (mut left_over, mut force) = (0.0, 0.0);
-        for own in &squares {
+        for assembly in &self.system.assemblies.all {
+            let parts = || assembly.parts.iter().map(|&part| &squares[part]);
+            standing.excess = excess(parts, tolerance).max(standing.excess);
+            let own = parts().fold(Squares::default(), Squares::with);
             let scale = own.scale();
             let [imbalance, rounding] =
                 [own.imbalance, own.rounding].map(|square| square.sqrt() / scale);
-            standing.is_tolerable &= imbalance <= tolerance;
             standing.is_rounding &= imbalance <= tolerance.max(rounding);
             left_over += (scale * tolerance.max(rounding)).powi(2);
             force += own.imbalance;
@@ -147,12 +150,17 @@ impl Driver {
     pub(super) fn scale_of_forces(&mut self) -> f64 {
         let mut squares = std::mem::take(&mut self.squares);
         self.square_forces(&mut squares);
-        let scale = squares.iter().map(|own| own.scale().powi(2)).sum::<f64>();
+        let of = |assembly: &Assembly| {
+            let parts = assembly.parts.iter().map(|&part| &squares[part]);
+            parts.fold(Squares::default(), Squares::with).scale()
+        };
+        let assemblies = self.system.assemblies.all.iter();
+        let scale = assemblies.map(|assembly| of(assembly).powi(2)).sum::<f64>();
         self.squares = squares;
         scale.sqrt()
     }
 
-    /// Squares of the forces of each assembly.
+    /// Squares of the forces of each part.
     fn square_forces(&mut self, squares: &mut Vec<Squares>) {
         if !std::mem::replace(&mut self.pace.is_sized, true) {
             self.size_of_motion(squares);
@@ -163,7 +171,7 @@ impl Driver {
             (own.imbalance, own.forces) = (0.0, [0.0; 5]);
         }
         for (part, unknowns) in system.parts.iter().enumerate() {
-            let own = &mut squares[system.assemblies.of_part[part]];
+            let own = &mut squares[part];
             for i in unknowns.clone() {
                 let contact = factor * vectors.contact[i];
                 if !system.fixed[i] {
@@ -188,18 +196,21 @@ impl Driver {
     /// Squares of what the motion at the start of the step says: of the momentum per step, and of what rounding leaves of forces.
     fn size_of_motion(&mut self, squares: &mut Vec<Squares>) {
         let system = &*self.system;
-        let count = system.assemblies.all.len();
         squares.clear();
-        squares.resize(count, Squares::default());
+        squares.resize(system.parts.len(), Squares::default());
         if !self.maps.is_static() {
-            let add = |part: usize, square: f64| {
-                squares[system.assemblies.of_part[part]].momentum += square / self.dt.powi(2);
-            };
+            let add = |part: usize, square: f64| squares[part].momentum += square / self.dt.powi(2);
             self.squares_of_momentum(add);
         }
+        for (span, map) in self.maps.spans() {
+            for i in span {
+                let inertia = map.inertia.x * system.mass.lumped[i] * self.vectors.x[i];
+                squares[system.part_of(i)].inertia_rounding += (f64::EPSILON * inertia).powi(2);
+            }
+        }
         let add = |unknown: usize, square: f64| {
-            let assembly = system.assemblies.of_part[system.part_of(unknown)];
-            squares[assembly].rounding += (2.0 * f64::EPSILON).powi(2) * square;
+            let part = system.part_of(unknown);
+            squares[part].rounding += (2.0 * f64::EPSILON).powi(2) * square;
         };
         self.squares_of_places(1.0, add);
     }
@@ -341,6 +352,29 @@ impl Driver {
             cell,
         })
     }
+}
+
+/// Part of the tolerance by which the largest forces of an assembly count in each of its parts: what contacts and links exchange is known to no more digits.
+const EXCHANGED: f64 = 1e-3;
+
+/// The same, in roundings.
+const ROUNDINGS: f64 = 16.0;
+
+/// Largest imbalance of the parts of an assembly over what is tolerated there: the tolerance times the largest of the forces that balance in the part, rounding
+/// of what the assembly exchanges, and of the inertia.
+fn excess<'a, I: Iterator<Item = &'a Squares>>(parts: impl Fn() -> I, tolerance: f64) -> f64 {
+    let exchanged = parts().fold(0.0, |most, part| part.largest().max(most));
+    let floor = (EXCHANGED * tolerance).max(ROUNDINGS * f64::EPSILON) * exchanged;
+    let of = |part: &Squares| {
+        let rounding = ROUNDINGS * part.inertia_rounding.sqrt();
+        let tolerated = (tolerance * part.largest()).max(floor).max(rounding);
+        // what is no number is not in balance
+        match part.imbalance.sqrt() / tolerated.max(f64::MIN_POSITIVE) {
+            excess if excess.is_nan() => f64::INFINITY,
+            excess => excess,
+        }
+    };
+    parts().map(of).fold(0.0, f64::max)
 }
 
 /// The first cell of a body that has this node (system number).

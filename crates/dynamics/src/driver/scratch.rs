@@ -247,7 +247,7 @@ pub(super) struct Restoring {
     pub(super) works: Vec<f64>,
 }
 
-/// Squares of norms of the forces of an assembly, N².
+/// Squares of norms of the forces of a connected part, or of several, N².
 #[derive(Clone, Copy, Default)]
 pub(super) struct Squares {
     pub(super) imbalance: f64,
@@ -257,12 +257,31 @@ pub(super) struct Squares {
     pub(super) momentum: f64,
     /// What rounding of places leaves of forces.
     pub(super) rounding: f64,
+    /// What rounding of the unknowns leaves of inertia forces.
+    pub(super) inertia_rounding: f64,
 }
 
 impl Squares {
+    /// The sums of both.
+    pub(super) fn with(mut self, other: &Squares) -> Squares {
+        self.imbalance += other.imbalance;
+        for (sum, force) in self.forces.iter_mut().zip(other.forces) {
+            *sum += force;
+        }
+        self.momentum += other.momentum;
+        self.rounding += other.rounding;
+        self.inertia_rounding += other.inertia_rounding;
+        self
+    }
+
     /// Largest norm of the forces that balance, N.
+    pub(super) fn largest(&self) -> f64 {
+        self.forces.into_iter().fold(0.0, f64::max).sqrt()
+    }
+
+    /// The same, or of the momentum per step.
     pub(super) fn scale(&self) -> f64 {
-        let largest = self.forces.into_iter().fold(self.momentum, f64::max);
-        largest.sqrt().max(f64::MIN_POSITIVE)
+        let momentum = self.momentum.sqrt();
+        self.largest().max(momentum).max(f64::MIN_POSITIVE)
     }
 }

@@ -87,13 +87,12 @@ impl Driver {
         let passes = self.system.nonlinear.iteration.passes;
         let (mut limit, most) = (passes, MOVES * passes);
         let mut standing = self.standing();
-        let mut pass = 0;
+        let (mut pass, mut before) = (0, None);
         while pass < limit {
             if self.interrupt.is_set() {
                 return Err(Error::Interrupted);
             }
             let jumps = self.jumps();
-            let before = self.residuals.last().copied();
             self.residuals.push(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing, before) {
                 return self.check_held(pass);
@@ -122,10 +121,10 @@ impl Driver {
                 // the part has moved on: iterations begin anew
                 limit = most.min(pass + passes);
             }
+            before = Some(standing.excess);
             standing = self.go(&standing, jumps)?;
             pass += 1;
         }
-        let before = self.residuals.last().copied();
         if self.is_solved(&standing, before) {
             return self.check_held(limit);
         }
@@ -184,15 +183,15 @@ impl Driver {
         Ok(())
     }
 
-    /// Whether iterations may end. `before`: the imbalance one iteration ago. Within what rounding leaves they end where they
+    /// Whether iterations may end. `before`: the excess one iteration ago. Within what rounding leaves they end where they
     /// gain no more, not where they get there: what is left would be of one sign step after step, and add up. Not so under the
     /// forces of links, whose passes need answers that are smooth in them.
     fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
-        let gains = before.is_none_or(|before| standing.imbalance < GAIN * before);
+        let gains = before.is_none_or(|before| standing.excess < GAIN * before);
         let gains = gains && self.link_force.is_empty();
         // the last iteration of those that converge quadratically is long: points that stick would slip by its square
         let most = if self.refines() { WITHIN } else { 1.0 };
-        (standing.is_tolerable || standing.is_rounding && !gains) && standing.defect <= most
+        (standing.excess <= 1.0 || standing.is_rounding && !gains) && standing.defect <= most
     }
 
     /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in

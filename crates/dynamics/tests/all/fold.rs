@@ -31,6 +31,7 @@ fn body(mesh: &Mesh, name: &str) -> ModelBody {
             plies: Vec::new(),
             nodal_thickness: None,
             tightened: Vec::new(),
+            layers: Vec::new(),
         },
         mass: MassKind::Lumped,
         velocity: [0.0; 3],
