@@ -14,7 +14,8 @@ use crate::reduced::Reduced;
 use crate::rigid::Rigid;
 use crate::scratch::Scratch;
 use crate::shell::Shell;
-use crate::solid::{BodySpec, Solid};
+use crate::solid::Solid;
+use crate::spec::BodySpec;
 use crate::{Bolt, Deleted, Error, FrequencyBound, Kinematics, Looks, Placement, Seen, Stored};
 
 /// A body: mass, forces f(u, v), their derivatives, energies.

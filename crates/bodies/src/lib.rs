@@ -19,6 +19,7 @@ mod frequency;
 mod gather;
 mod gyroscopic;
 mod kinematics;
+mod layering;
 mod layers;
 mod locking;
 mod nodes;
@@ -34,6 +35,7 @@ mod shell;
 mod single;
 mod size;
 mod solid;
+mod spec;
 mod stability;
 mod stresses;
 mod together;
@@ -73,6 +75,7 @@ pub use shell::{
     shell_defects,
 };
 pub use size::{height, smallest as smallest_size};
-pub use solid::{BodySpec, Solid};
+pub use solid::Solid;
+pub use spec::BodySpec;
 pub use turning::balanced;
 pub use weights::CellWeights;

@@ -5,7 +5,8 @@ use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::beam::{Beam, SectionForces, SectionStress};
-use crate::solid::{BodySpec, Solid};
+use crate::solid::Solid;
+use crate::spec::BodySpec;
 use crate::{Error, Kinematics};
 
 /// A body that can be reduced: small strain and small rotations, and nothing flows.

@@ -15,7 +15,8 @@ use carom_algebra::unknowns::Unknowns;
 use carom_mesh::{ElementId, Mesh};
 
 use crate::gyroscopic;
-use crate::solid::{BodySpec, Solid};
+use crate::solid::Solid;
+use crate::spec::BodySpec;
 use crate::{Error, Kinematics, Placement};
 
 /// Mass, centre and inertia of a rigid body.

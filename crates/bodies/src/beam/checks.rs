@@ -4,7 +4,7 @@ use carom_elements::Kind;
 use carom_mesh::Mesh;
 
 use super::element::EndWeights;
-use crate::solid::BodySpec;
+use crate::spec::BodySpec;
 use crate::{Error, Formulation, Kinematics};
 
 /// Refuses bodies that are none of beams.

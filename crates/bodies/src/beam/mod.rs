@@ -13,6 +13,7 @@ mod extremes;
 mod fibres;
 mod flow;
 mod forces;
+mod functions;
 mod large;
 mod results;
 mod section;
@@ -42,7 +43,7 @@ use self::tightened::Bolts;
 use crate::discrete::VisitRow;
 use crate::flowing::Flowing;
 use crate::release::Release;
-use crate::solid::BodySpec;
+use crate::spec::BodySpec;
 use crate::stability::largest_eigenvalue;
 use crate::{Error, Placement, Stored};
 

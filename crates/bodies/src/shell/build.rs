@@ -14,7 +14,7 @@ use super::shares::{self, PointWeights};
 use super::strain::Form;
 use super::through::Through;
 use super::{Shell, ShellSection};
-use crate::solid::BodySpec;
+use crate::spec::BodySpec;
 use crate::{Error, Formulation, Kinematics, Rotations};
 
 /// Cosine of the angle between the normals of two elements from which on the edge between them is a fold: 40°. Directors are means of

@@ -4,7 +4,7 @@ use carom_mesh::{ElementId, Mesh};
 
 use super::products::MOST;
 use crate::Error;
-use crate::solid::BodySpec;
+use crate::spec::BodySpec;
 
 /// Weights α and δ at the points of integration of an element.
 #[derive(Clone, Copy, Debug)]

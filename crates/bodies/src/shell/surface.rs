@@ -6,7 +6,7 @@ use super::ShellSection;
 use super::build::{check, geometry};
 use super::products::DIRECTOR;
 use crate::Error;
-use crate::solid::BodySpec;
+use crate::spec::BodySpec;
 
 /// An element of a shell: where its middle surface is. Directors turn with the nodes, with the shape functions of the element.
 #[derive(Clone, Debug, PartialEq)]

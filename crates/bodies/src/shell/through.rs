@@ -10,7 +10,7 @@ use super::section::ShellSection;
 use super::section::{ElasticSection, Inertia, Ply, heights};
 use super::shares::PointWeights;
 use super::strain::Form;
-use crate::solid::BodySpec;
+use crate::spec::BodySpec;
 
 /// Resistance of triangles to shear: h² over h² and this part of the square of the longest edge.
 const TRIANGLE: f64 = 0.1;

@@ -65,6 +65,7 @@ pub const PLANE: &[Small] = &[
 pub const STATIC: &[Small] = &[
     ("blocks-non-matching/case-solid.toml", &[]),
     ("blocks-non-matching/case.toml", &[]),
+    ("bolted-plates/solid.toml", &[]),
     (
         "hertz-cylinder/case-force.toml",
         &["mesh.file=\"cylinder-coarse.msh\"", "time.static.steps=3"],
