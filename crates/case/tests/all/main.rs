@@ -18,6 +18,7 @@ mod events;
 mod forged;
 mod general;
 mod grades;
+mod happened;
 mod hinged;
 mod interrupts;
 mod large;
