@@ -286,6 +286,16 @@ impl Compliance {
     }
 
     /// Whether the point is one of a rigid body.
+    /// What the own response of a candidate has grown by, m/N; zero of points on no rigid body.
+    pub(crate) fn softened(&self, point: u32) -> f64 {
+        let Some((group, row)) = self.blocks.place(point).filter(|_| self.is_rigid(point)) else {
+            return 0.0;
+        };
+        let (group, row) = (group as usize, row as usize);
+        let own = self.blocks.entries(group)[row * (self.blocks.rows(group).len() + 1)];
+        own * self.softening / (1.0 + self.softening)
+    }
+
     fn is_rigid(&self, point: u32) -> bool {
         let rigid = |&dof: &u32| self.rigid.get(dof as usize) == Some(&true);
         let kept = self.kept[point as usize].as_ref();

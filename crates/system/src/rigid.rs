@@ -391,17 +391,6 @@ impl System {
         }
     }
 
-    /// Whether all unknowns of a node are held over the static stage.
-    fn waits(&self, node: u32) -> bool {
-        let staged = self.staged.as_ref();
-        staged.is_some_and(|staged| {
-            staged
-                .unknowns
-                .of(node)
-                .all(|unknown| staged.fixed[unknown])
-        })
-    }
-
     /// Refuses what rigid bodies do not take.
     fn check_rigid(&self) -> Result<(), Error> {
         let Some(body) = self.bodies.iter().find_map(Body::as_rigid) else {
@@ -422,12 +411,6 @@ impl System {
             let what = Refused::Rigid(body.name().to_owned());
             Err(Error::Nonlinear { what, why })
         };
-        let mut all = self.bodies.iter().filter_map(Body::as_rigid);
-        if self.nonlinear.preload.is_some() && !all.all(|body| self.waits(body.node())) {
-            return refuse(
-                "a static stage has no rotations; let the body wait for the dynamics (hold), or begin with these",
-            );
-        }
         if self.schemes.iter().any(|scheme| scheme.get().is_explicit()) {
             return refuse(
                 "an explicit step would take the moment W × J W at the velocity before it and keep neither energy nor angular \

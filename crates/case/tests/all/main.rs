@@ -41,6 +41,7 @@ mod repeat;
 mod resolved;
 mod resume;
 mod resume_cases;
+mod rigid_stages;
 mod simulation;
 mod stage_one;
 mod stages;

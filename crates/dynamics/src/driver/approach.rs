@@ -47,7 +47,11 @@ impl Driver {
     /// No contact on the way; forces that cannot be taken where it ends.
     pub(super) fn approach(&mut self, scale: f64) -> Result<bool, Error> {
         let (system, pieces) = (Arc::clone(&self.system), Arc::clone(&self.floating.pieces));
-        let rigid = Rigid::new(&system, &pieces, Some(&self.places()));
+        let rigid = Rigid::new(
+            &system,
+            &pieces,
+            (&self.places(), Some(&self.state.motion.frames)),
+        );
         let Some(c) = self.certain_load(&rigid, scale) else {
             return match self.tips(&rigid) {
                 true => Err(self.unheld(&rigid, &self.floating.carried)),
@@ -119,7 +123,11 @@ impl Driver {
     pub(super) fn unbalanced(&self, passes: usize, imbalance: f64) -> Error {
         let system = &*self.system;
         if self.floats() {
-            let rigid = Rigid::new(system, &self.floating.pieces, Some(&self.places()));
+            let rigid = Rigid::new(
+                system,
+                &self.floating.pieces,
+                (&self.places(), Some(&self.state.motion.frames)),
+            );
             let c = self.unheld_load(&rigid);
             let mut loose = c.clone();
             for piece in self.grounded() {
@@ -206,7 +214,11 @@ impl Driver {
         let mut shortened = false;
         let system = Arc::clone(&self.system);
         let pieces = Arc::clone(&self.floating.pieces);
-        let rigid = Rigid::new(&system, &pieces, Some(&self.places()));
+        let rigid = Rigid::new(
+            &system,
+            &pieces,
+            (&self.places(), Some(&self.state.motion.frames)),
+        );
         let mut c = rigid.nearest(&self.vectors.dx);
         self.held(&rigid).take_from(&mut c);
         for (piece, size) in self.floating.sizes.iter().enumerate() {
@@ -237,7 +249,7 @@ impl Driver {
             &mut places,
         );
         let pieces = Arc::clone(&self.floating.pieces);
-        let rigid = Rigid::new(&system, &pieces, Some(&places));
+        let rigid = Rigid::new(&system, &pieces, (&places, Some(&self.state.motion.frames)));
         let mut c = rigid.nearest(&self.vectors.dx);
         c.iter_mut().for_each(|c| *c *= share);
         for (i, u) in rigid.arc(&c) {

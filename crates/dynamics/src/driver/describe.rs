@@ -15,9 +15,10 @@ impl Driver {
         self.free_gaps.clear();
         for k in 0..self.candidates.len() {
             let point = self.candidates[k];
+            let last = self.next.interface.force[point as usize];
             let free = match tangents {
-                Some(tangents) => self.free_along(point * (1 + tangents), &self.stacked),
-                None => self.free_along(point, &self.pairing.rows),
+                Some(tangents) => self.free_along(point * (1 + tangents), &self.stacked, last),
+                None => self.free_along(point, &self.pairing.rows, last),
             };
             data.push(self.candidate(point as usize, free));
             if self.system.adaptive.is_some() {
@@ -44,8 +45,14 @@ impl Driver {
     }
 
     /// N x of the motion of the iteration without contact forces, of the row of that number in `rows`.
-    pub(super) fn free_along(&self, number: u32, rows: &Rows) -> f64 {
-        let free = self.effective.free(number, &self.vectors.half);
+    ///
+    /// `last`: the force of the row an iteration ago, N. What is added to the response of points on a rigid body, so that they share their force, is about
+    /// that one in a static stage, where nothing but their iterations holds the body and its response is large: at the end nothing of it is left over.
+    pub(super) fn free_along(&self, number: u32, rows: &Rows, last: f64) -> f64 {
+        let mut free = self.effective.free(number, &self.vectors.half);
+        if self.floats() {
+            free -= self.effective.softened(number) * last;
+        }
         match self.jumps() {
             true => free + rows.product(number as usize, &self.vectors.jump),
             false => free,

@@ -120,6 +120,8 @@ pub(super) struct At<'a> {
     pub(super) rows: &'a Arc<Vec<LinkRow>>,
     /// Pieces with a proximal term, and its part of the diagonal.
     pub(super) proximal: (Option<&'a Pieces>, f64),
+    /// Stiffness for the proximal term where nothing in the model has any, N/m.
+    pub(super) without: f64,
     /// Whether the derivative without contact forces is kept, where all parts have one that changes.
     pub(super) whole: bool,
     /// Whether the curvature of contacts is taken within each of their sides alone, where passes make up for what couples the two.
@@ -291,6 +293,12 @@ impl Effective {
             &mut now.compliance,
             now.linking.as_mut(),
         ))
+    }
+
+    /// What the own response of a point has grown by ([`Compliance::softened`]), m/N.
+    pub(super) fn softened(&self, point: u32) -> f64 {
+        let now = self.now.as_ref();
+        now.map_or(0.0, |now| now.compliance.softened(point))
     }
 
     /// N x of the free motion, from the y of `begin`, of a point whose column is at hand.

@@ -1,6 +1,7 @@
 //! Pieces that supports leave free in a static stage, and that contacts may hold: which they are, and what the iterations know of
 //! them. [`super::approach`] has what is done about them.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -48,10 +49,11 @@ impl Floating {
             Some(_) => &system.parts[..],
             None => &[],
         };
+        let carried = carried(system);
         for part in stages {
-            let whole = Joined::whole(system, part);
+            let whole = Joined::whole((system, &carried), part);
             let free = whole.free();
-            let apart = Joined::apart(system, part);
+            let apart = Joined::apart((system, &carried), part);
             // what the bodies of the part can do beyond moving together
             let against = match apart.groups.len() > 1 {
                 true => apart.free(),
@@ -78,8 +80,7 @@ impl Floating {
             if !touches(system, &group.nodes) {
                 return Err(free_motion(system, &group.nodes, motion));
             }
-            let nodes = system.nodes_of(part).map(|node| node as u32);
-            pieces.push(nodes.collect());
+            pieces.extend(whole.groups.into_iter().map(|group| group.nodes));
         }
         let pieces = Pieces::new(system, pieces);
         Ok(Floating {
@@ -100,6 +101,17 @@ impl Floating {
         self.carried.clear();
         (self.tipping, self.tipped) = (0, 0.0);
     }
+}
+
+/// The nodes that each node carries: those of rigid bodies.
+pub(super) fn carried(system: &System) -> BTreeMap<u32, Vec<u32>> {
+    let mut carried: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for node in 0..system.x.len() as u32 {
+        if let Some(carrier) = system.unknowns.carrier(node) {
+            carried.entry(carrier.node).or_default().push(node);
+        }
+    }
+    carried
 }
 
 /// Mean over the elements of each piece of the least distance of two nodes of one, m: how far normals and faces say what comes. A piece without

@@ -66,7 +66,18 @@ impl Driver {
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
         self.describe_candidates(Some(tangents as u32));
         let mut friction = Vec::new();
-        let free = |number| self.free_along(number, &self.stacked);
+        let interface = &self.next.interface;
+        let last = |number: u32| {
+            let (point, row) = (
+                number as usize / (1 + tangents),
+                number as usize % (1 + tangents),
+            );
+            match row {
+                0 => interface.force[point],
+                _ => interface.friction[point][row - 1],
+            }
+        };
+        let free = |number| self.free_along(number, &self.stacked, last(number));
         self.tangential(free, &mut friction);
         if iterate {
             let solved = self.find_with_friction(&friction, s);

@@ -38,15 +38,23 @@ pub(super) struct Joined<'a> {
 
 impl<'a> Joined<'a> {
     /// A part as one rigid body.
-    pub(super) fn whole(system: &'a System, part: &Range<usize>) -> Joined<'a> {
-        Joined::new(system, part, |leaders| leaders.fill(0))
+    ///
+    /// `carried`: the nodes that each node carries.
+    pub(super) fn whole(
+        of: (&'a System, &BTreeMap<u32, Vec<u32>>),
+        part: &Range<usize>,
+    ) -> Joined<'a> {
+        Joined::new(of, part, |leaders| leaders.fill(0))
     }
 
     /// A part as the groups of nodes that elements join; those of a reduced body are one.
-    pub(super) fn apart(system: &'a System, part: &Range<usize>) -> Joined<'a> {
+    pub(super) fn apart(
+        (system, carried): (&'a System, &BTreeMap<u32, Vec<u32>>),
+        part: &Range<usize>,
+    ) -> Joined<'a> {
         let first = system.nodes_of(part).start;
         let inside = |node: u32| part.contains(&system.unknowns.first(node));
-        Joined::new(system, part, |leaders| {
+        Joined::new((system, carried), part, |leaders| {
             for body in &system.bodies {
                 let mut own = false;
                 body.each_joining_element(&mut |nodes| {
@@ -59,7 +67,11 @@ impl<'a> Joined<'a> {
         })
     }
 
-    fn new(system: &'a System, part: &Range<usize>, join: impl Fn(&mut [usize])) -> Joined<'a> {
+    fn new(
+        (system, carried): (&'a System, &BTreeMap<u32, Vec<u32>>),
+        part: &Range<usize>,
+        join: impl Fn(&mut [usize]),
+    ) -> Joined<'a> {
         let nodes = system.nodes_of(part);
         let first = nodes.start as u32;
         let mut leaders: Vec<usize> = (0..nodes.len()).collect();
@@ -81,7 +93,11 @@ impl<'a> Joined<'a> {
             members[number[leader]].push(node as u32);
             group[own] = number[leader];
         }
-        let groups = members.into_iter().map(|nodes| {
+        let groups = members.into_iter().map(|mut nodes| {
+            let of_rigid = nodes.iter().filter_map(|node| carried.get(node)).flatten();
+            nodes.extend(of_rigid.copied().collect::<Vec<u32>>());
+            nodes.sort_unstable();
+            nodes.dedup();
             let x = |node: &u32| &system.x[*node as usize];
             let centre =
                 [0, 1, 2].map(|i| nodes.iter().map(|n| x(n)[i]).sum::<f64>() / nodes.len() as f64);

@@ -3,12 +3,16 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use carom_algebra::reduce::norm_squared;
 use carom_contact::{Contact, Sliding};
 
 use super::Driver;
 use super::effective::{At, Turning};
 use super::floating::{GROWTH as HEAVIER, LARGEST};
 use crate::error::Error;
+
+/// Motion over the size of the model by which loads say what stiffness a model has.
+const DEFLECTION: f64 = 1e-3;
 
 impl Driver {
     /// Takes the matrices of the attempt: those of linear parts are ready with it.
@@ -50,6 +54,18 @@ impl Driver {
         self.between() || contacts.any(slides)
     }
 
+    /// A stiffness of the size of what the model has where it has none that is known, N/m: the loads would move it by a thousandth of itself.
+    fn stiffness_by_load(&self) -> f64 {
+        let (load, size) = (
+            norm_squared(&self.vectors.load).sqrt(),
+            self.system.mesh.size(),
+        );
+        match load > 0.0 && size > 0.0 {
+            true => load / (DEFLECTION * size),
+            false => 1.0,
+        }
+    }
+
     /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
     /// without them, then in the configuration at the start of the step, or with more of the proximal term: the iterations take
     /// longer, and the answer is the same. A first guess that compresses what is nearly incompressible has pressures of many
@@ -84,6 +100,7 @@ impl Driver {
             history: &motion.history,
             rows: &self.rows,
             proximal: (floats, self.floating.weight),
+            without: self.stiffness_by_load(),
             whole: self.leaves_out(),
             apart: self.leaves_out() && self.may_refine(),
         };

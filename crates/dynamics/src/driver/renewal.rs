@@ -104,7 +104,9 @@ impl Matrices {
             }
             let free = self.free[k].matrix_mut();
             let of = (&group.parts[..], &fixed[..]);
-            let without = stiffest_bolt(system);
+            let without = stiffest_bolt(system)
+                .unwrap_or(at.without)
+                .max(f64::MIN_POSITIVE);
             add_proximal((at.proximal, &self.diagonal[..]), of, without, free);
             let all = system.unknowns.node_of_each();
             let unknowns = group.parts.iter().cloned().flatten();
@@ -343,11 +345,10 @@ fn add_proximal(
     }
 }
 
-/// Stiffness of the stiffest bolt that is tightened, N/m: what holds a model without any other; 1 without bolts.
-fn stiffest_bolt(system: &System) -> f64 {
+/// Stiffness of the stiffest bolt that is tightened, N/m: what holds a model without any other; none without bolts.
+fn stiffest_bolt(system: &System) -> Option<f64> {
     let bolts = system.bodies.iter().flat_map(|body| body.bolts());
-    let stiffness = bolts.map(|bolt| bolt.stiffness).reduce(f64::max);
-    stiffness.unwrap_or(1.0)
+    bolts.map(|bolt| bolt.stiffness).reduce(f64::max)
 }
 
 /// Counts the work with a factor that is dropped.

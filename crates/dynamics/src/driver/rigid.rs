@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use carom_algebra::basis::Amplitude;
+use carom_algebra::rotation::Rotation;
+use carom_algebra::tensor::{Mat3, Vec3};
 use carom_algebra::unknowns::Kind;
 use carom_bodies::{Body, Reduced};
 use carom_contact::Rows;
@@ -30,6 +32,8 @@ pub(super) struct Rigid<'a> {
     places: Vec<[f64; 3]>,
     /// The amplitudes of reduced bodies, by unknown.
     amplitudes: BTreeMap<usize, &'a Amplitude>,
+    /// Rotations of the nodes of rigid bodies where their turns are among the motions.
+    turned: BTreeMap<u32, Mat3>,
 }
 
 /// What scales the motions of a piece.
@@ -59,18 +63,35 @@ impl Frame {
 
 impl<'a> Rigid<'a> {
     /// `u`: displacement of the nodes, m, of bodies at finite strain; one at small strain has the rigid motions of its reference
-    /// places.
-    pub(super) fn new(system: &'a System, pieces: &'a Pieces, u: Option<&[f64]>) -> Rigid<'a> {
+    /// places. `frames`: rotations at the start of the step, where the turns of rigid bodies are among the motions.
+    pub(super) fn new(
+        system: &'a System,
+        pieces: &'a Pieces,
+        (u, frames): (&[f64], Option<&[Rotation]>),
+    ) -> Rigid<'a> {
         let dim = system.dim;
+        let turned = frames.map_or(BTreeMap::new(), |frames| rotations(system, frames, u));
         let mut places = system.x.clone();
         for (body, masses) in system.bodies.iter().zip(&system.body_masses) {
-            let Some(u) = u.filter(|_| body.has_finite_motion()) else {
+            if !body.has_finite_motion() {
                 continue;
-            };
+            }
             for &(node, _) in masses {
                 let moved = system.unknowns.vector(node, u);
                 for (place, u) in places[node as usize].iter_mut().zip(moved) {
                     *place += u;
+                }
+            }
+        }
+        for piece in pieces.iter().filter(|_| !turned.is_empty()) {
+            for &node in &piece.nodes {
+                let Some(carrier) = system.unknowns.carrier(node) else {
+                    continue;
+                };
+                if let Some(turn) = turned.get(&carrier.node) {
+                    let arm = turn * Vec3::from(carrier.arm);
+                    let centre = places[carrier.node as usize];
+                    places[node as usize] = [0, 1, 2].map(|i| centre[i] + arm[i]);
                 }
             }
         }
@@ -95,6 +116,7 @@ impl<'a> Rigid<'a> {
             frames: frames.collect(),
             places,
             amplitudes: system.unknowns.amplitudes().collect(),
+            turned,
         };
         for (k, piece) in pieces.iter().enumerate() {
             let mut squares = vec![0.0; rigid.modes.len()];
@@ -117,16 +139,20 @@ impl<'a> Rigid<'a> {
         let unknowns = &self.system.unknowns;
         let node = unknowns.node(unknown);
         let kind = unknowns.kind(unknown);
-        let amplitude = match kind {
-            // finite rotations are not linear in the coordinates
-            Kind::Rotation(_) if unknowns.frame(node).is_some() => return None,
-            Kind::Translation(_) | Kind::Rotation(_) => None,
-            Kind::Amplitude(_) => Some(*self.amplitudes.get(&unknown)?),
-        };
+        let (mut amplitude, mut about) = (None, None);
+        match kind {
+            // a turn about an axis of the node; finite rotations of others are not linear in the coordinates
+            Kind::Rotation(axis) if unknowns.frame(node).is_some() => {
+                about = Some(self.turned.get(&node)?.column(axis));
+            }
+            Kind::Translation(_) | Kind::Rotation(_) => {}
+            Kind::Amplitude(_) => amplitude = Some(*self.amplitudes.get(&unknown)?),
+        }
         let place = &self.places[node as usize];
-        let values = self.modes.iter().map(move |mode| match amplitude {
-            None => frame.value(mode, (place, kind)),
-            Some(of) => frame.unit * of_amplitude(mode, (&frame.centre, frame.size), of),
+        let values = self.modes.iter().map(move |mode| match (amplitude, about) {
+            (Some(of), _) => frame.unit * of_amplitude(mode, (&frame.centre, frame.size), of),
+            (_, Some(axis)) => frame.unit / frame.size * axis.dot(&Vec3::from(turn_of(mode))),
+            _ => frame.value(mode, (place, kind)),
         });
         Some((piece * self.modes.len(), values))
     }
@@ -296,6 +322,18 @@ impl<'a> Rigid<'a> {
             Some((node, angles[piece]))
         })
     }
+}
+
+/// Rotations of the nodes of rigid bodies at increments `u` since those at the start of the step.
+fn rotations(system: &System, frames: &[Rotation], u: &[f64]) -> BTreeMap<u32, Mat3> {
+    let rigid = system.bodies.iter().filter_map(Body::as_rigid);
+    let rotation = |body: &carom_bodies::Rigid| {
+        let node = body.node();
+        let start = frames.get(system.unknowns.frame(node)?)?.matrix();
+        let increment = Vec3::from(system.unknowns.spin(node, u));
+        Some((node, start * Rotation::cayley(&increment).matrix()))
+    };
+    rigid.filter_map(rotation).collect()
 }
 
 fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {

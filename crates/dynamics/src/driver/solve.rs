@@ -407,7 +407,7 @@ impl Driver {
         // explicit zones have their place already
         let factor = |i: usize| self.maps.of(i).displacement.x;
         let parts = Pieces::of_parts(&system);
-        let rigid = Rigid::new(&system, &parts, Some(&motion.u));
+        let rigid = Rigid::new(&system, &parts, (&motion.u, None));
         let mut c = rigid.nearest(&motion.v);
         c.iter_mut().for_each(|c| *c *= self.dt);
         let vectors = &mut self.vectors;
