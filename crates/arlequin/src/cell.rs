@@ -76,7 +76,7 @@ impl Cell {
 
     fn affine_map(&self) -> Option<([f64; 3], [[f64; 3]; 3])> {
         let table = self.kind.table();
-        let (origin, (j, det)) = (self.point(&[0.0; 3]), self.jacobian(&[0.0; 3]));
+        let (origin, (j, det)) = (self.point(&[0.0; 3]), self.signed_jacobian(&[0.0; 3]));
         let largest = self
             .x()
             .iter()
@@ -140,14 +140,19 @@ impl Cell {
         &out[..table.nodes]
     }
 
-    /// Jacobian and its determinant at ξ.
+    /// Jacobian at ξ and its determinant, of a bar without the sign: it may run against the axis, and lengths count, not orientation.
     pub fn jacobian(&self, xi: &[f64; 3]) -> ([[f64; 3]; 3], f64) {
+        let (j, det) = self.signed_jacobian(xi);
+        let is_bar = self.kind.table().dim == 1;
+        (j, if is_bar { det.abs() } else { det })
+    }
+
+    /// Jacobian at ξ and its determinant, of which the inverse is made.
+    fn signed_jacobian(&self, xi: &[f64; 3]) -> ([[f64; 3]; 3], f64) {
         let table = self.kind.table();
         let mut dn = [[0.0; 3]; MAX_NODES];
         (table.gradient)(xi, &mut dn[..table.nodes]);
-        let (j, det) = map::jacobian(self.x(), &dn[..table.nodes], table.dim);
-        // A bar may run against the axis: lengths count, not orientation.
-        (j, if table.dim == 1 { det.abs() } else { det })
+        map::jacobian(self.x(), &dn[..table.nodes], table.dim)
     }
 
     /// Reference coordinates of a position: exact for an affine map, else by Newton's method from the centre.
@@ -158,10 +163,7 @@ impl Cell {
         }
         let mut xi = [0.0; 3];
         for _ in 0..50 {
-            let mut dn = [[0.0; 3]; MAX_NODES];
-            let table = self.kind.table();
-            (table.gradient)(&xi, &mut dn[..table.nodes]);
-            let (j, det) = map::jacobian(self.x(), &dn[..table.nodes], table.dim);
+            let (j, det) = self.signed_jacobian(&xi);
             let step = multiply(&inverse(&j, det), &sub(x, &self.point(&xi)));
             (0..3).for_each(|i| xi[i] += step[i]);
             if !xi.iter().all(|t| t.abs() < 1e3) {
@@ -340,6 +342,18 @@ mod tests {
         assert!(volumes.iter().all(|&v| v > 0.0));
         // Four triangles around the middle of a bilinear face hold the volume below it.
         assert!((volumes.iter().sum::<f64>() - cell.measure()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_inverse_map_of_a_bar_does_not_depend_on_its_sense() {
+        let mut mesh = generate::line("a", [0.0; 3], [2.0, 0.0, 0.0], 1, 1);
+        for [first, last] in [[0.0, 2.0], [2.0, 0.0]] {
+            (mesh.nodes[0][0], mesh.nodes[1][0]) = (first, last);
+            let cell = Cell::new(&mesh, mesh.groups["a"].elements[0]);
+            assert_eq!(cell.measure(), 2.0);
+            let xi = [0.25, 0.0, 0.0];
+            assert_eq!(cell.reference(&cell.point(&xi)), Some(xi));
+        }
     }
 
     #[test]

@@ -14,7 +14,7 @@ use crate::resume::{after, cases, content, open, run, words};
 pub type Small = (&'static str, &'static [&'static str]);
 
 /// Bars, and masses on stops.
-const BARS: &[Small] = &[
+pub const BARS: &[Small] = &[
     ("arlequin-bars/case-fine.toml", &[]),
     ("arlequin-bars/case.toml", &[]),
     ("bar-on-wall/case.toml", &[]),
@@ -98,7 +98,7 @@ pub const SOLID: &[Small] = &[
 ];
 
 /// Solids in zones, and beside beams, shells and masses.
-const MIXED: &[Small] = &[
+pub const MIXED: &[Small] = &[
     ("assembly-row/case-5.toml", &[]),
     ("beam-and-solid/case-solid.toml", &[]),
     ("beam-and-solid/case.toml", &[]),

@@ -12,7 +12,7 @@ use super::file::Meshed;
 pub struct Change {
     /// Velocity added along the plane, m/s.
     pub velocity: f64,
-    /// Bodies, meshes and contacts in reversed order.
+    /// Bodies, meshes and contacts have names in the reversed order, which is what decides on their order.
     pub reversed: bool,
     /// Factor of lengths and times: velocities and strains stay.
     pub scale: f64,
@@ -67,6 +67,21 @@ impl Change {
     fn turn(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let x = if self.mirrored { -x } else { x };
         if self.turned { [-y, x] } else { [x, y] }
+    }
+
+    /// The number in the name of a block or of a contact above it.
+    fn number(&self, k: usize) -> usize {
+        if self.reversed { 9 - k } else { k }
+    }
+
+    /// The name of a contact as the model has it.
+    pub fn contact(&self, k: usize) -> String {
+        format!("c{}", self.number(k))
+    }
+
+    /// The name of a block.
+    fn block(&self, k: usize) -> String {
+        format!("b{}", self.number(k))
     }
 
     /// A place.
@@ -249,10 +264,10 @@ impl Model {
             raised.origin[0] += 0.3 * change.raised * (k * k) as f64;
             raised.origin[1] += change.raised * (k + 1) as f64;
             if file.is_none() {
-                meshes.push(mesh(&format!("b{k}"), &raised, change));
+                meshes.push(mesh(&change.block(k), &raised, change));
             }
             if k == 0 || change.meshed != Some(Meshed::Joined) {
-                tables.push(self.body(&format!("b{k}"), block, change));
+                tables.push(self.body(&change.block(k), block, change));
             }
             if change.meshed == Some(Meshed::Split) {
                 tables.push(self.body(&format!("b{k}r"), block, change));
@@ -262,17 +277,19 @@ impl Model {
         if let Some(bystander) = change.bystander {
             self.add(bystander, change, (&mut meshes, &mut tables));
         }
-        if change.reversed {
-            meshes.reverse();
-            tables.reverse();
-        }
         format!(
-            "carom = 1\n[mesh]\n{}\n{}\n[time]\nend = {:?}\nstep = {:?}\n{}\n",
+            "carom = 1\n[mesh]\n{}\n{}\n[time]\nend = {:?}\nstep = {:?}\n{}\n{}\n",
             meshes.join("\n"),
             tables.join("\n"),
             change.scale * self.end(),
             change.scale * self.step(),
-            self.scheme
+            self.scheme,
+            // what iterations leave grows as much as rounding does: it must be as small
+            if self.finite && !self.explicit {
+                "newton.tolerance = 1e-12"
+            } else {
+                ""
+            }
         )
     }
 
@@ -335,19 +352,23 @@ impl Model {
         }
         if self.on_plane {
             tables.push(format!(
-                "[contact.c0]\nsecondary = \"b0.{bottom}\"\nobstacle.plane = {{ point = {:?}, normal = {:?} }}\n{rest}",
+                "[contact.{}]\nsecondary = \"{}.{bottom}\"\nobstacle.plane = {{ point = {:?}, normal = {:?} }}\n{rest}",
+                change.contact(0),
+                change.block(0),
                 change.place([0.0, 0.0]),
                 change.turn([0.0, 1.0]),
             ));
         }
         for k in 1..self.blocks.len() {
-            let mut sides = [format!("b{k}.{bottom}"), format!("b{}.{top}", k - 1)];
+            let [upper, lower] = [k, k - 1].map(|k| change.block(k));
+            let mut sides = [format!("{upper}.{bottom}"), format!("{lower}.{top}")];
             if change.swapped {
                 sides.reverse();
             }
             let [secondary, primary] = sides;
             tables.push(format!(
-                "[contact.c{k}]\nsecondary = \"{secondary}\"\nprimary = \"{primary}\"\n{rest}"
+                "[contact.{}]\nsecondary = \"{secondary}\"\nprimary = \"{primary}\"\n{rest}",
+                change.contact(k)
             ));
         }
     }

@@ -235,10 +235,13 @@ pub(super) fn lost_to_scheme(evidence: &Evidence) -> Finding {
 const OF_LOSABLE: &str =
     ", relative to the largest energy or the energy put in, whichever is larger";
 
+/// An excess of energy over the largest energy that the rounding of sums makes by itself.
+const ROUNDING: f64 = 1e-12;
+
 /// Kinetic and strain energy that the scheme takes for none.
 pub(super) fn of_scheme(evidence: &Evidence) -> Finding {
     let ledger = &evidence.last.ledger;
-    if ledger.largest_excess <= 0.0 {
+    if ledger.largest_excess <= ROUNDING * evidence.last.largest_energy() {
         return Finding::Absent;
     }
     Finding::Line(Line::new(
