@@ -21,6 +21,7 @@ mod gyroscopic;
 mod kinematics;
 mod locking;
 mod nodes;
+mod peak;
 mod pretension;
 mod reduced;
 mod reducible;
@@ -58,6 +59,7 @@ pub use finite::{
 pub use flowing::Fibre;
 pub use kinematics::{Kinematics, MassKind};
 pub use locking::Bending;
+pub use peak::{LookCost, PeakStress, StressedState};
 pub use pretension::{Bolt, TightenedCell};
 pub use reduced::{Reduced, ReducedMass, ReducedMatrices, Reduction};
 pub use reducible::Reducible;
