@@ -46,7 +46,10 @@ fn check(summary: &Summary, exact: f64, every: u64) {
         "{found:?} {exact}"
     );
     assert_eq!(found.body, "rod");
-    assert_eq!(summary.maxima.von_mises_of_bodies, [found.clone()]);
+    assert_eq!(
+        summary.maxima.von_mises_of_bodies[..],
+        *std::slice::from_ref(found)
+    );
     let [stress] = &summary.allowables[..] else {
         panic!("{:?}", summary.allowables);
     };
