@@ -65,6 +65,11 @@ pub(crate) struct Law {
 }
 
 impl Law {
+    /// Stress of a strain, Pa.
+    pub(crate) fn stress(&self, strain: &Mat3) -> Mat3 {
+        self.material.stress(self.plane, strain)
+    }
+
     pub(crate) fn new(kinematics: Kinematics, material: Elastic, dim: usize) -> Law {
         let plane = kinematics.plane();
         let thickness = match kinematics {
@@ -219,7 +224,40 @@ pub(crate) fn stress<const N: usize>(
     }
     let mean = h / volume;
     let strain = 0.5 * (mean + mean.transpose());
-    (volume, law.material.stress(law.plane, &strain))
+    (volume, law.stress(&strain))
+}
+
+/// Means over an element of ∂N_a/∂x, 1/m, and in axisymmetry of N_a/r, 1/m.
+pub(crate) fn mean_gradients<const N: usize>(
+    law: &Law,
+    points: &Points,
+    x: &[[f64; 3]; N],
+) -> ([[f64; 3]; N], [f64; N]) {
+    let (mut volume, mut gradients, mut hoops) = (0.0, [[0.0; 3]; N], [0.0; N]);
+    for point in &points.points {
+        let dn = &point.dn[..N];
+        let (jacobian, det) = map::jacobian(x, dn, law.dim);
+        let cofactors = cofactor(&jacobian);
+        let radius = map::point(x, &point.n[..N])[0];
+        let around = if law.axisymmetric {
+            std::f64::consts::TAU * radius
+        } else {
+            1.0
+        };
+        let weight = point.weight * law.thickness * around;
+        volume += weight * det;
+        for a in 0..N {
+            for (sum, cofactors) in gradients[a].iter_mut().zip(&cofactors) {
+                *sum += weight * dn[a].iter().zip(cofactors).map(|(d, c)| d * c).sum::<f64>();
+            }
+            hoops[a] += weight * det * point.n[a] / radius;
+        }
+    }
+    let mean = |sum: f64| sum / volume;
+    (
+        gradients.map(|gradient| gradient.map(mean)),
+        hoops.map(mean),
+    )
 }
 
 /// ∂u/∂ξ.

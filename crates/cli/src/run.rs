@@ -434,16 +434,14 @@ fn further(summary: &Summary) -> Vec<String> {
     let energy = &summary.energy;
     let work = |name: &str| energy.works.get(name).map(|work| (name.to_string(), *work));
     let works = ["supports", "obstacles"].into_iter().filter_map(work);
-    let works = works.map(|(name, work)| format!("work of {name} {}", quantity(work, "J")));
+    let joules = |value: f64| quantity(energy.shown(value), "J");
+    let works = works.map(|(name, work)| format!("work of {name} {}", joules(work)));
     let lost = energy
         .dissipations
         .iter()
         .filter(|(name, _)| *name != "scheme");
-    let lost = lost.map(|(name, lost)| format!("dissipated ({name}) {}", quantity(*lost, "J")));
-    let stored = energy
-        .stored
-        .get("hardening")
-        .map(|kept| quantity(*kept, "J"));
+    let lost = lost.map(|(name, lost)| format!("dissipated ({name}) {}", joules(*lost)));
+    let stored = energy.stored.get("hardening").map(|kept| joules(*kept));
     let stored = stored.map(|kept| format!("stored (hardening) {kept}"));
     works.chain(lost).chain(stored).collect()
 }

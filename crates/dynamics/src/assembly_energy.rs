@@ -155,7 +155,7 @@ impl AssemblyEnergies {
             let mut contacts = 0.0;
             for &contact in &assembly.contacts {
                 energy.given.add(obstacles[contact]);
-                contacts += records[contact].work() - records[contact].friction_loss();
+                contacts += records[contact].work_with_friction();
             }
             // the impulse from outside is the change of the momentum
             let carried =

@@ -13,6 +13,7 @@ use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, StepMap};
 use crate::sum::Sum;
 use crate::system::{Maps, Motion, System};
+use crate::tolerated::Tolerated;
 
 /// What the ledger shows at an instant; works and dissipations since the start, J.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -119,16 +120,6 @@ impl Balance {
     }
 }
 
-/// What the iterations of a run may leave unbalanced at the tolerance that was asked for: the work and the impulse of a force
-/// of that size in every step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Tolerated {
-    /// Σ r |Δu|, J, with r the Euclidean norm of the nodal forces that may be left over in the step.
-    pub energy: f64,
-    /// Σ dt r √n, N s, with n the number of nodes: a component of the sum of forces of that norm is no larger.
-    pub momentum: f64,
-}
-
 /// The balance with the memory that it needs.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -163,6 +154,8 @@ pub struct Ledger {
     pub deleted: u64,
     /// What the iterations may have left unbalanced so far.
     pub tolerated: Tolerated,
+    /// What rounding may have left of linear steps so far (`driver/rounding.rs`).
+    pub rounding: Tolerated,
     /// Largest absolute energy residual so far, J.
     pub largest_energy_residual: f64,
     /// Largest absolute component of the linear momentum residual so far, N s.
@@ -329,8 +322,7 @@ impl Ledger {
             sum.add(term);
         }
         (self.hardening, self.hourglass) = (beyond.hardening, beyond.hourglass);
-        self.tolerated.energy += beyond.tolerated.energy;
-        self.tolerated.momentum += beyond.tolerated.momentum;
+        self.tolerated.add(&beyond.tolerated);
     }
 
     /// Moves what deleted elements had stored at the end of the step just added to its own term.
@@ -442,8 +434,9 @@ impl Ledger {
 
     /// Makes this the ledger of several systems together, which have these balances at the start and now. The largest terms
     /// are those of the sums.
-    pub fn gather(&mut self, initial: Balance, balance: Balance, tolerated: Tolerated) {
-        (self.initial, self.balance, self.tolerated) = (initial, balance, tolerated);
+    pub fn gather(&mut self, initial: Balance, balance: Balance, left: [Tolerated; 2]) {
+        (self.initial, self.balance) = (initial, balance);
+        [self.tolerated, self.rounding] = left;
         self.follow();
     }
 

@@ -40,6 +40,7 @@ mod shared;
 mod small;
 pub mod state;
 mod sum;
+mod tolerated;
 mod update;
 mod watch;
 
@@ -63,7 +64,7 @@ pub use error::{Error, MeshNode};
 pub use exchange::Exchange;
 pub use impact::{Impact, NoRestitution};
 pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
-pub use ledger::{Balance, Ledger, Tolerated};
+pub use ledger::{Balance, Ledger};
 pub use load_forces::load_forces;
 pub use march::{
     FailedProblem, Going, Observer, Outcome, Scope, Stepper, Watched, go_on, is_at_end, march,
@@ -85,3 +86,4 @@ pub use system::{
     Motion, NamedSupport, NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn,
     Refused, ReportedSupport, Solver, Support, System,
 };
+pub use tolerated::Tolerated;

@@ -70,7 +70,10 @@ pub struct ContactRecord {
     pub energy_crushed: f64,
     /// Energy that friction has taken so far, J.
     rubbed: Sum,
-    /// Work of the normal forces and of the impulses so far, beyond that of a moving obstacle, J.
+    /// The same over the static stage before the dynamics, J.
+    rubbed_before: f64,
+    /// Work of the normal forces and of the impulses so far, beyond that of a moving obstacle, J; of the dynamics without their static stage, in which
+    /// contacts give what an interference has pressed into the bodies.
     worked: Sum,
     /// Largest such work so far, J: what the contact has made at most.
     pub largest_work: f64,
@@ -184,6 +187,11 @@ impl ContactRecord {
         self.rubbed.get()
     }
 
+    /// Work beside friction, and what friction took, since the start of the dynamics, J, as one work.
+    pub(crate) fn work_with_friction(&self) -> f64 {
+        self.work() - (self.rubbed.get() - self.rubbed_before)
+    }
+
     /// Σ |P (ġ₊ + opening)| dt, J.
     pub fn persistency_defect(&self) -> f64 {
         self.defect.get()
@@ -254,11 +262,13 @@ impl Records {
                 .all(|impact| (impact.contact as usize) < contacts)
     }
 
-    /// Starts the clocks of the contacts at the end of a static stage: what is compressed there closes with the first step of the
-    /// dynamics.
+    /// Starts the clocks and the works of the contacts at the end of a static stage: what is compressed there closes with the first step of the
+    /// dynamics, whose balance begins anew.
     pub(crate) fn begin_dynamics(&mut self) {
         for record in &mut self.contacts {
             (record.first_closing, record.last_force) = (None, None);
+            (record.worked, record.largest_work) = (Sum::default(), 0.0);
+            record.rubbed_before = record.rubbed.get();
         }
     }
 

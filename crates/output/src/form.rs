@@ -35,6 +35,17 @@ impl Form {
     }
 }
 
+/// Part of the largest number of its kind that the sums of a run leave of a zero.
+const ROUNDING: f64 = 1e-12;
+
+/// A number, or zero where it is rounding beside numbers of this size.
+pub(crate) fn near(value: f64, size: f64) -> f64 {
+    match value.abs() <= ROUNDING * size {
+        true => 0.0,
+        false => value,
+    }
+}
+
 /// A part as per cent.
 pub(crate) fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part).replace('-', "−")

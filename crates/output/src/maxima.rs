@@ -15,13 +15,22 @@ pub struct Maximum {
     pub time: f64,
 }
 
-/// The largest values at the instants that a run keeps for its pictures; between them they may have been larger.
+/// The largest values: of stresses over the steps, of others at the instants that a run keeps for its pictures, between which they may have been
+/// larger.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Maxima {
     /// Number of these instants: at equal times, at the first closing, the largest force and the last release, and at the end.
     pub instants: usize,
-    /// Von Mises stress, mean of a cell, Pa; of a shell the largest of middle and faces. `None` where nothing is stressed.
+    /// Steps from one look at the stresses to the next: 1 where each is looked at. The kept instants and static
+    /// steps are looked at in any case.
+    #[serde(default)]
+    pub stress_every: u64,
+    /// Von Mises stress, mean of a cell, Pa; of a shell the largest through its thickness, of a beam the largest in its sections. `None` where
+    /// nothing is stressed.
     pub von_mises: Option<Maximum>,
+    /// The same of each body that is stressed.
+    #[serde(default)]
+    pub von_mises_of_bodies: Vec<Maximum>,
     /// Principal strain of a cell of the largest magnitude, of solids and bars: at small strain that of the displacement, at
     /// finite strain the logarithmic one; `None` where nothing is strained.
     #[serde(default)]

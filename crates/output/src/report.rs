@@ -10,16 +10,13 @@ use std::path::Path;
 use minijinja::value::Serde;
 use minijinja::{Environment, HtmlEscape, Value, context};
 
-use crate::form::{NOTHING, percent};
+use crate::form::{NOTHING, near, percent};
 use crate::page::anchors::section;
 use crate::page::{Data, PROGRAM, STYLE};
 use crate::plot::{digits, quantity, scientific};
 use crate::results::{BodyQuality, Tile};
 use crate::summary::{Angular, Summary};
 use crate::{Error, ImpactRow, atomic};
-
-/// Part of the largest number of its kind that the sums of a run leave of a zero.
-const ROUNDING: f64 = 1e-12;
 
 /// What the page shows.
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +107,7 @@ pub(crate) fn environment() -> Result<Environment<'static>, Error> {
         show(&value, |x| quantity(x, unit))
     });
     environment.add_filter("exact", |value: Value| show(&value, exact));
-    environment.add_filter("near", near);
+    environment.add_filter("near", without_rounding);
     environment.add_filter("percent", |value: Value| show(&value, percent));
     environment.add_filter("section", |line: &str| section(line));
     environment.add_filter("code", |text: &str| Value::from_safe_string(code(text)));
@@ -152,10 +149,10 @@ fn show(value: &Value, text: impl Fn(f64) -> String) -> String {
 }
 
 /// What is rounding beside numbers of this size is zero; what is no number stays as it is.
-fn near(value: Value, size: f64) -> Value {
+fn without_rounding(value: Value, size: f64) -> Value {
     match f64::try_from(value.clone()) {
-        Ok(number) if number.abs() <= ROUNDING * size => Value::from(0.0),
-        _ => value,
+        Ok(number) => Value::from(near(number, size)),
+        Err(_) => value,
     }
 }
 

@@ -146,7 +146,7 @@ pub struct Check {
     pub name: String,
     /// Unit of the values.
     pub unit: String,
-    /// The values. The governing one is what it is of; a stress is that of the kept instants ([`crate::maxima::Maxima`]).
+    /// The values. The governing one is what it is of; a plastic strain is that of the kept instants ([`crate::maxima::Maxima`]).
     pub margin: Margin,
 }
 

@@ -76,6 +76,12 @@ impl Parts<'_> {
 
 impl Mass {
     /// A diagonal one, kg, one entry per unknown.
+    /// The entry of an unknown on the diagonal, kg or kg m²; of reduced bodies nothing.
+    pub fn diagonal(&self, unknown: usize) -> f64 {
+        let consistent = self.consistent.as_ref();
+        self.lumped[unknown] + consistent.map_or(0.0, |mass| mass.get(unknown, unknown))
+    }
+
     pub(crate) fn of_diagonal(lumped: Vec<f64>) -> Mass {
         Mass {
             lumped,

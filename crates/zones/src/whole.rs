@@ -174,16 +174,13 @@ impl Whole {
             balance.work_links -= work;
             balance.work_contact += work;
         }
-        let tolerated = self
-            .zones
-            .drivers
-            .iter()
-            .map(|driver| driver.state().ledger.tolerated);
-        let tolerated = tolerated.fold(Tolerated::default(), |sum, one| Tolerated {
-            energy: sum.energy + one.energy,
-            momentum: sum.momentum + one.momentum,
-        });
-        self.state.ledger.gather(initial, balance, tolerated);
+        let mut left = [Tolerated::default(); 2];
+        for driver in &self.zones.drivers {
+            let ledger = &driver.state().ledger;
+            left[0].add(&ledger.tolerated);
+            left[1].add(&ledger.rounding);
+        }
+        self.state.ledger.gather(initial, balance, left);
         let zones = self.zones.drivers.iter();
         let exchange = &mut self.state.exchange;
         exchange.gather(zones.map(|driver| &driver.state().exchange));

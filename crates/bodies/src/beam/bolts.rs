@@ -107,7 +107,7 @@ impl Beam {
     }
 
     /// Normal force that an element keeps beside E A ε, N; `history`: of this body.
-    pub(super) fn kept_force(&self, element: usize, history: &[f64]) -> f64 {
+    pub(crate) fn kept_force(&self, element: usize, history: &[f64]) -> f64 {
         let place = self.bolts.elements.iter().position(|own| *own == element);
         place.and_then(|k| history.get(k)).copied().unwrap_or(0.0)
     }

@@ -75,11 +75,21 @@ struct Place {
 
 /// The places of a section at which its stresses may be the largest.
 #[derive(Clone, Debug)]
-pub(super) struct Places {
+pub(crate) struct Places {
     properties: SectionProperties,
     /// Whether all directions of the section are alike: the first place is then in the direction in which it bends.
     is_round: bool,
     all: Vec<Place>,
+    most: Most,
+}
+
+/// The largest magnitudes over the places.
+#[derive(Clone, Copy, Debug, Default)]
+struct Most {
+    /// Of normal stresses of a unit of M_y and M_z.
+    normal: [f64; 2],
+    /// Of shear stresses of a unit of V_y, V_z and T.
+    shear: [f64; 3],
 }
 
 impl Places {
@@ -92,6 +102,7 @@ impl Places {
             (None, None) => return None,
         };
         Some(Places {
+            most: Most::of(&all, &properties),
             properties,
             is_round: matches!(
                 section.shape,
@@ -102,7 +113,7 @@ impl Places {
     }
 
     /// The largest stresses under the forces of both ends.
-    pub(super) fn stress(&self, forces: &SectionForces) -> SectionStress {
+    pub(crate) fn stress(&self, forces: &SectionForces) -> SectionStress {
         let mut found = SectionStress::none();
         for moment in [&forces.moment_first, &forces.moment_second] {
             let (force, moment) = self.turned(&forces.force, moment);
@@ -112,6 +123,18 @@ impl Places {
             }
         }
         found
+    }
+
+    /// A bound of the largest equivalent stress under the forces of both ends, Pa, in a fraction of the time: the sum of what each force makes at
+    /// most.
+    pub(crate) fn bound(&self, forces: &SectionForces) -> f64 {
+        let Most { normal, shear } = &self.most;
+        let ends = [&forces.moment_first, &forces.moment_second];
+        let moment = |axis: usize| ends[0][axis].abs().max(ends[1][axis].abs());
+        let [along, along_y, along_z] = forces.force.map(f64::abs);
+        let normal = along / self.properties.area + normal[0] * moment(1) + normal[1] * moment(2);
+        let shear = shear[0] * along_y + shear[1] * along_z + shear[2] * moment(0);
+        normal.hypot(3.0_f64.sqrt() * shear)
     }
 
     /// The largest stresses where fibres have flowed, at this many sections: `fibre` is the normal stress at a place of one of them.
@@ -150,6 +173,19 @@ impl Places {
             ]
         };
         (turn(force), turn(moment))
+    }
+}
+
+impl Most {
+    fn of(all: &[Place], properties: &SectionProperties) -> Most {
+        let [about_y, about_z] = properties.second_moments;
+        let mut most = Most::default();
+        for Place { at: [y, z], shear } in all {
+            let normal = [z.abs() / about_y, y.abs() / about_z];
+            most.normal = [0, 1].map(|i| most.normal[i].max(normal[i]));
+            most.shear = [0, 1, 2].map(|i| most.shear[i].max(shear[i][0].hypot(shear[i][1])));
+        }
+        most
     }
 }
 

@@ -64,7 +64,7 @@ pub struct Beam {
     /// System numbers of the nodes of each element.
     nodes: Vec<[u32; 2]>,
     /// First unknowns of these nodes.
-    first: Vec<[usize; 2]>,
+    pub(crate) first: Vec<[usize; 2]>,
     lengths: Vec<f64>,
     /// Axes x, y, z of each element, as rows.
     axes: Vec<Mat3>,
@@ -77,9 +77,9 @@ pub struct Beam {
     /// Released rotations of these.
     released: Vec<[bool; 12]>,
     /// Extension and bending of metal that flows.
-    flowing: Option<Flowing>,
+    pub(crate) flowing: Option<Flowing>,
     /// Where its sections have their largest stresses; none where that is not known.
-    places: Option<Places>,
+    pub(crate) places: Option<Places>,
     bolts: Bolts,
 }
 
@@ -286,7 +286,7 @@ impl Beam {
     }
 
     /// Unknowns of a node.
-    fn per_node(&self) -> usize {
+    pub(crate) fn per_node(&self) -> usize {
         if self.dim == 2 { 3 } else { 6 }
     }
 

@@ -30,22 +30,31 @@ impl Beam {
 
     /// Forces and moments in the sections of each element, weights apart. `history`: of this body at `u`.
     pub fn section_forces(&self, u: &[f64], history: &[f64]) -> Vec<SectionForces> {
-        let of = |element: usize| {
-            let local = self.local(element, u);
-            let f = match &self.flowing {
-                None => {
-                    let k = self.whole_element(element).stiffness();
-                    k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>())
-                }
-                Some(flowing) => self.flowed(flowing, (element, &local), (u, history)),
-            };
-            SectionForces {
-                force: [f[6] + self.kept_force(element, history), f[7], f[8]],
-                moment_first: [-f[3], -f[4], -f[5]],
-                moment_second: [f[9], f[10], f[11]],
+        let all = 0..self.nodes.len();
+        all.map(|element| self.section_force(element, u, history))
+            .collect()
+    }
+
+    /// The same of one element.
+    pub(crate) fn section_force(
+        &self,
+        element: usize,
+        u: &[f64],
+        history: &[f64],
+    ) -> SectionForces {
+        let local = self.local(element, u);
+        let f = match &self.flowing {
+            None => {
+                let k = self.whole_element(element).stiffness();
+                k.map(|row| row.iter().zip(&local).map(|(k, u)| k * u).sum::<f64>())
             }
+            Some(flowing) => self.flowed(flowing, (element, &local), (u, history)),
         };
-        (0..self.nodes.len()).map(of).collect()
+        SectionForces {
+            force: [f[6] + self.kept_force(element, history), f[7], f[8]],
+            moment_first: [-f[3], -f[4], -f[5]],
+            moment_second: [f[9], f[10], f[11]],
+        }
     }
 
     /// See [`Body::section_stresses`](crate::Body::section_stresses).

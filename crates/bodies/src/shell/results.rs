@@ -131,6 +131,11 @@ impl Shell {
             .collect()
     }
 
+    /// Thickness of each element, m, over its points.
+    pub(crate) fn mean_thicknesses(&self) -> impl Iterator<Item = f64> {
+        self.elements.iter().map(Element::mean_thickness)
+    }
+
     /// The largest rotation of a node, and the largest strain of a face, of shells with small rotations.
     pub(crate) fn distortion(&self, u: &[f64], before: &Distortion) -> Option<Distortion> {
         if self.turns() {

@@ -17,6 +17,7 @@ mod locking;
 mod mass;
 mod one_point_shells;
 mod patch;
+mod peaks;
 mod quadratic;
 mod refusals;
 mod sample;

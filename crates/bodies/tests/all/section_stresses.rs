@@ -20,7 +20,7 @@ const STEEL: Elastic = Elastic {
 
 const LENGTH: f64 = 0.8;
 
-const SHAPES: [SectionShape; 4] = [
+pub(crate) const SHAPES: [SectionShape; 4] = [
     SectionShape::Circle { diameter: 0.04 },
     SectionShape::Tube {
         diameter: 0.06,
@@ -50,7 +50,7 @@ fn halves(shape: &SectionShape) -> [f64; 2] {
     }
 }
 
-fn section(shape: &SectionShape) -> BeamSection {
+pub(crate) fn section(shape: &SectionShape) -> BeamSection {
     BeamSection {
         shape: Some(*shape),
         orientation: Some([0.0, 1.0, 0.0]),
@@ -59,7 +59,7 @@ fn section(shape: &SectionShape) -> BeamSection {
 }
 
 /// An element along x from the origin.
-fn body(section: BeamSection, law: impl Into<Law>) -> Body {
+pub(crate) fn body(section: BeamSection, law: impl Into<Law>) -> Body {
     let mut mesh = Mesh::new(3);
     mesh.nodes = vec![[0.0; 3], [LENGTH, 0.0, 0.0]];
     let cells = vec![mesh.push(Kind::Bar2, &[0, 1])];

@@ -463,7 +463,7 @@ impl Builder<'_> {
             // rounding of the times in the file
             if from_file && steps.longest > 1.001 * dt {
                 warnings.push(format!(
-                    "signal.{name}: its points are up to {} s apart, the steps of the run {dt} s: the acceleration is straight between the points, so the record says nothing about the response above {:.3} Hz",
+                    "signal.{name}: its points are up to {:.6} s apart, the steps of the run {dt} s: the acceleration is straight between the points, so the record says nothing about the response above {:.3} Hz",
                     steps.longest,
                     0.5 / steps.longest
                 ));

@@ -154,14 +154,15 @@ pub struct Allowables {
     pub pretension: Named<PretensionAllowable>,
 }
 
-/// What a body may bear, at the instants that are kept for pictures: between them it may have borne more.
+/// What a body may bear.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 #[schemars(extend("anyOf" = [{ "required": ["stress"] }, { "required": ["plastic-strain"] }]))]
 pub struct BodyAllowable {
-    /// Largest von Mises stress of a cell.
+    /// Largest von Mises stress: of a cell, of a shell through its thickness, of a beam in its sections. Of all steps, or of those that
+    /// `maxima.stress_every` of the summary tells.
     pub stress: Option<Modulus>,
-    /// Largest equivalent plastic strain of a cell.
+    /// Largest equivalent plastic strain of a cell at the instants that are kept for pictures: between them it may have been larger.
     #[schemars(extend("exclusiveMinimum" = 0.0))]
     pub plastic_strain: Option<f64>,
 }

@@ -47,6 +47,28 @@ fn margins_of_stress_and_of_a_support_are_those_of_a_bar() {
     assert!(run(BAR).unwrap().allowables.is_empty());
 }
 
+#[test]
+fn the_margin_of_plastic_strain_is_that_of_its_hardening() {
+    // 20 MPa beyond the yield stress are a plastic strain of 20 MPa over the hardening, and the strain of 100 MPa beside it
+    let metal = r#"j2 = { young = "200 GPa", poisson = 0.3, yield-stress = "80 MPa", hardening = "1 GPa" }"#;
+    let case = BAR.replace(r#"elastic = { young = "200 GPa", poisson = 0.0 }"#, metal);
+    let case = case.replace(
+        r#"load.pull = { on = "bar.right", force = ["10 kN"] }"#,
+        r#"support.pull = { on = "bar.right", move.x = [{ time = 1.0, displacement = 0.0205 }] }"#,
+    );
+    let allowed = "output.allowable.body.bar = { plastic-strain = 0.03 }";
+    let summary = run(&format!("{case}{allowed}")).unwrap();
+    let [strain] = &summary.allowables[..] else {
+        panic!("{:?}", summary.allowables);
+    };
+    // to the tolerance of the equilibrium
+    assert!(
+        (strain.margin.found / 0.02 - 1.0).abs() < 1e-6,
+        "{strain:?}"
+    );
+    assert!((strain.margin.margin.unwrap() - 0.5).abs() < 1e-5);
+}
+
 /// A mass that hits a stop which is crushed, and one on a spring: both stop within a quarter of their periods.
 const MASSES: &str = r#"
 carom = 1

@@ -14,10 +14,11 @@ use super::reported;
 use super::scratch::Works;
 use super::{Driver, Which};
 use crate::error::Error;
-use crate::ledger::{Beyond, Energies, Squares, Tolerated};
+use crate::ledger::{Beyond, Energies, Squares};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, Row, StepMap};
+use crate::tolerated::Tolerated;
 
 impl Driver {
     /// Writes the motion at the end of the step, its internal forces and histories.

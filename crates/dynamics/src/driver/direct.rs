@@ -17,9 +17,10 @@ use super::loads::damping_rate;
 use super::reported;
 use crate::assembly_energy::PartMotion;
 use crate::error::Error;
-use crate::ledger::{Beyond, Energies, Squares, Tolerated};
+use crate::ledger::{Beyond, Energies, Squares};
 use crate::resultant::Resultant;
 use crate::step_map::{Impulse, Known, Row};
+use crate::tolerated::Tolerated;
 use crate::update::{Sums, Update};
 
 /// Unknowns of which one thread writes the displacement, at least.

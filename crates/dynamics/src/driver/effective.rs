@@ -94,6 +94,8 @@ pub(super) struct Matrices {
     pub(super) coupled: Vec<Vec<Vec<u32>>>,
     /// Diagonals, by unknown.
     pub(super) diagonal: Vec<f64>,
+    /// The part of the stiffness in them, N/m or N m, of linear parts; zero of held unknowns. Empty until somebody asks.
+    pub(super) stiffness: Vec<f64>,
 }
 
 /// Where the tangent of the bodies is taken.
@@ -431,6 +433,7 @@ impl Matrices {
             ranks: ranks.clone(),
             coupled,
             diagonal,
+            stiffness: Vec::new(),
         })
     }
 

@@ -162,7 +162,9 @@ impl Driver {
                     + weights.new * dot(travel, &new.link_force)
             }
         };
+        let rounding = self.rounding_of_step();
         self.next.ledger.clone_from(&self.state.ledger);
+        self.next.ledger.rounding.add(&rounding);
         self.resize_energy();
         self.next.ledger.add(
             (

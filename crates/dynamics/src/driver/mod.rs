@@ -72,6 +72,7 @@ mod reported;
 mod residual;
 mod restoring;
 mod rigid;
+mod rounding;
 mod scratch;
 mod solve;
 mod span;

@@ -1,8 +1,8 @@
 //! What bodies, supports, springs and bolts had to bear, against what the case allows.
 
-use crate::results::Results;
 use crate::results::settings::{AllowableSettings, Bearer};
 use crate::results::stills::Still;
+use crate::results::{Results, largest};
 use crate::statistics::{Check, Margin};
 
 /// All that the case allows, with what was found.
@@ -18,11 +18,12 @@ fn check(results: &Results, stills: &[&Still], allowed: &AllowableSettings) -> C
     let all = results.discrete.all();
     let (quantity, kind, name, unit, found) = match &allowed.of {
         Bearer::Stress(number) => {
-            let found = largest(stills, *number, 0);
+            let found = largest::stress(results, stills, *number);
+            let found = found.map(|peak| [peak.value, peak.time]);
             ("von Mises stress", "body", body(*number), "Pa", found)
         }
         Bearer::PlasticStrain(number) => {
-            let found = largest(stills, *number, 1);
+            let found = plastic_strain(stills, *number);
             ("plastic strain", "body", body(*number), "", found)
         }
         Bearer::Support(number) => {
@@ -61,9 +62,12 @@ fn check(results: &Results, stills: &[&Still], allowed: &AllowableSettings) -> C
     }
 }
 
-/// The largest value of a field in a body at the kept instants, and when: stress, plastic strain.
-fn largest(stills: &[&Still], body: usize, field: usize) -> Option<[f64; 2]> {
+/// The largest plastic strain of a body at the kept instants, and when.
+fn plastic_strain(stills: &[&Still], body: usize) -> Option<[f64; 2]> {
     let values = stills.iter();
-    let values = values.filter_map(|still| Some([still.of_bodies.get(body)?[field]?, still.time]));
+    let values = values.filter_map(|still| {
+        let (value, _) = still.of_bodies.get(body)?[1]?;
+        Some([value, still.time])
+    });
     values.reduce(|best, other| if other[0] > best[0] { other } else { best })
 }

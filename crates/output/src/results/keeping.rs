@@ -9,7 +9,7 @@ use serde::Deserialize;
 use super::due::Due;
 use super::{
     Pieces, Results, bolts, columns, discrete, exact, fields, figures, histories, impacts,
-    instants, loads, page, stills, support_peaks, totals,
+    instants, loads, page, stills, stressed, support_peaks, totals,
 };
 use crate::checkpoint::{self, Checkpoint};
 use crate::results::{Settings, Tables};
@@ -22,12 +22,12 @@ struct Gathered(Files, Beside);
 /// Bytes of the list of files, histories, impacts, fields.
 type Files = (u64, histories::Kept, impacts::Kept, Option<fields::Sent>);
 
-/// Figures, kept instants, instants of largest forces, springs and dashpots with bolts and supports, loads, spectra, filtered accelerations, series and statuses
+/// Figures, kept instants with the largest stresses, instants of largest forces, springs and dashpots with bolts and supports, loads, spectra, filtered accelerations, series and statuses
 /// of the page, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Beside(
     figures::Traces,
-    stills::Kept,
+    (stills::Kept, stressed::Kept),
     Vec<instants::Instant>,
     (
         discrete::DiscretePeaks,
@@ -124,7 +124,7 @@ impl Results {
     fn takes(&self, beside: &Beside) -> bool {
         let Beside(
             traces,
-            kept,
+            (kept, stressed),
             instants,
             (_, bolts, supports),
             loads,
@@ -138,6 +138,7 @@ impl Results {
         ) = beside;
         self.curves.takes(traces)
             && self.stills.takes(&self.system, kept)
+            && self.stressed.takes(&self.system, stressed)
             && self.instants.takes(&self.system, instants)
             && bolts.is_of(&self.system)
             && supports.is_of(self.system.supports.len())
@@ -157,7 +158,7 @@ impl Results {
         }
         let Beside(
             traces,
-            kept,
+            (kept, stressed),
             instants,
             (discrete, bolts, supports),
             loads,
@@ -171,6 +172,7 @@ impl Results {
         ) = beside;
         self.curves.go_on(traces);
         self.stills.go_on(kept);
+        self.stressed.kept = stressed;
         self.instants.go_on(instants);
         self.discrete = discrete;
         self.bolts = bolts;
@@ -216,7 +218,7 @@ impl Results {
             self.impacts.keep()?,
             fields.transpose()?,
             self.curves.kept(),
-            self.stills.settled(&self.system),
+            (self.stills.settled(&self.system), &self.stressed.kept),
             self.instants.kept(),
             (&self.discrete, &self.bolts, &self.supports),
             &self.loads.totals,

@@ -1,4 +1,4 @@
-//! The largest values of the fields at the instants that were kept.
+//! The largest values of the fields: of stresses over the steps that were looked at, of others at the instants that were kept.
 
 use carom_dynamics::System;
 
@@ -7,13 +7,28 @@ use crate::results::Results;
 use crate::results::cells::middle;
 use crate::results::page::model;
 use crate::results::stills::{Largest, Still};
+use crate::results::stressed::Peak;
 
 /// Those of a run that has ended.
 pub(crate) fn maxima(results: &Results) -> Maxima {
     let stills = stills(results);
+    let bodies = 0..results.system.bodies.len();
+    let of_bodies = bodies.filter_map(|body| {
+        let peak = stress(results, &stills, body).filter(|peak| peak.value > 0.0)?;
+        let middle = middle(&results.system, peak.cell)?;
+        let found = (peak.value, peak.time);
+        Some(maximum(&results.system, found, (body, &middle)))
+    });
+    let of_bodies: Vec<Maximum> = of_bodies.collect();
+    let larger = |best: Maximum, other: Maximum| match other.value > best.value {
+        true => other,
+        false => best,
+    };
     Maxima {
         instants: stills.len(),
-        von_mises: of_cells(results, &stills, 0),
+        stress_every: results.stressed.every,
+        von_mises: of_bodies.iter().cloned().reduce(larger),
+        von_mises_of_bodies: of_bodies,
         strain: of_cells(results, &stills, 2),
         plastic_strain: of_cells(results, &stills, 1),
         displacement: of_nodes(results, &stills),
@@ -26,7 +41,24 @@ pub(crate) fn stills(results: &Results) -> Vec<&Still> {
     instants.iter().map(|(still, _)| *still).collect()
 }
 
-/// The largest of the values at cells: stress, plastic strain or strain.
+/// The largest equivalent stress of a body, over the steps that were looked at and the kept instants.
+pub(crate) fn stress(results: &Results, stills: &[&Still], body: usize) -> Option<Peak> {
+    let kept = stills.iter().filter_map(|still| {
+        let (value, cell) = still.of_bodies.get(body)?[0]?;
+        let time = still.time;
+        Some(Peak { value, cell, time })
+    });
+    let all = results.stressed.of(body).into_iter().chain(kept);
+    all.reduce(|best, other| {
+        if other.value > best.value {
+            other
+        } else {
+            best
+        }
+    })
+}
+
+/// The largest of the values at cells: plastic strain or strain.
 fn of_cells(results: &Results, stills: &[&Still], field: usize) -> Option<Maximum> {
     let (system, seen) = (&results.system, &results.stills.seen);
     let values = stills.iter();

@@ -45,6 +45,7 @@ mod settings;
 mod snapshot;
 mod spectra;
 pub(crate) mod stills;
+mod stressed;
 mod support_peaks;
 mod totals;
 pub(crate) mod trace;
@@ -83,6 +84,7 @@ pub use settings::{
 };
 use spectra::Spectra;
 use stills::Stills;
+use stressed::Stressed;
 use totals::{Last, Totals};
 pub use zoning::Zoning;
 
@@ -100,6 +102,7 @@ pub struct Results {
     fields: Option<FieldOutput>,
     curves: Curves,
     stills: Stills,
+    stressed: Stressed,
     series: SeriesOf,
     raster: RasterOf,
     instants: Instants,
@@ -203,6 +206,7 @@ impl Results {
         Ok(Results {
             curves,
             stills: Stills::new(&system, settings.end),
+            stressed: Stressed::new(&system),
             series,
             raster: RasterOf::new(&system, settings.end),
             instants: Instants::new(&system, &settings.levels),
@@ -246,6 +250,9 @@ impl Results {
         self.impacts.take(&self.system, state, report)?;
         self.curves.push(&self.system, state, report);
         self.stills.push(&self.system, state, report);
+        if !report.partial {
+            self.stressed.push(&self.system, state);
+        }
         self.series
             .push(&self.system, (state, report), &self.impacts.told.contacts);
         self.series.push_loads(report.time, &self.loads.now);
@@ -377,6 +384,7 @@ impl Observer for Results {
         let cells = probes.any(|probe| probe.cells().next().is_some());
         let all = fields.is_some_and(|fields| fields.wants_all(&self.system, time))
             || self.stills.wants(time, report).contains(&true)
+            || self.stressed.wants(run.state().step)
             || self.instants.wants(report)
             || self
                 .due

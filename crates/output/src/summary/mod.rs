@@ -11,6 +11,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::form::near;
 use crate::maxima::Maxima;
 use crate::statistics::{Check, Level};
 use crate::verdict::Verdict;
@@ -269,6 +270,11 @@ pub struct Energy {
 }
 
 impl Energy {
+    /// A work or a loss of the run as it is shown to people, J: zero where it is what rounding leaves beside the largest energy.
+    pub fn shown(&self, energy: f64) -> f64 {
+        near(energy, self.largest)
+    }
+
     /// Energy put in, J: that at the start, and the positive ones of the works of loads, supports and obstacles over the run.
     pub(crate) fn supplied(&self) -> f64 {
         let outside = ["loads", "supports", "obstacles"];

@@ -14,6 +14,24 @@ const RESIDUAL: f64 = 1e-9;
 /// Most of the energy that any tolerance may leave unbalanced.
 pub(super) const MOST_TOLERATED: f64 = 1e-3;
 
+/// Most of the energy or the momentum that rounding may leave unbalanced: where it would leave more, nothing is known.
+const MOST_ROUNDED: f64 = 1e-6;
+
+/// The bound of a residual, and the quantity with what is permitted of it: what the tolerance of the iterations leaves, and what rounding leaves
+/// of forces that are sums of much larger ones, relative to what the residual is relative to.
+pub(super) fn permitted(quantity: &str, [tolerated, rounding]: [f64; 2]) -> (String, Bounds) {
+    let rounding = rounding.min(MOST_ROUNDED);
+    let quantity = match rounding > RESIDUAL {
+        true => format!(
+            "{quantity} (rounding permits {} in elements this stiff against some of their motions)",
+            Form::Power.show(rounding)
+        ),
+        false => of_tolerance(quantity, tolerated),
+    };
+    let bound = (RESIDUAL + tolerated + rounding).min(MOST_TOLERATED);
+    (quantity, Bounds::Bad(bound))
+}
+
 /// The quantity with what the tolerance of the iterations leaves of it.
 pub(super) fn of_tolerance(quantity: &str, tolerated: f64) -> String {
     match tolerated > 0.0 {
@@ -88,18 +106,16 @@ pub(super) fn residual(evidence: &Evidence) -> Finding {
             "the balance of energy: no energy identity of the scheme {scheme} is known, so the residual contains the dissipation of the scheme"
         ));
     }
-    let tolerated = relative(
-        evidence.last.ledger.tolerated.energy,
-        evidence.last.balanced_energy(),
-    );
+    let ledger = &evidence.last.ledger;
+    let left = [ledger.tolerated.energy, ledger.rounding.energy];
+    let left = left.map(|energy| relative(energy, evidence.last.balanced_energy()));
+    let tolerated = left[0];
+    let quantity = "energy residual relative to the largest energy";
+    let (quantity, bounds) = permitted(quantity, left);
     Finding::Line(Line::new(
         "energy-residual",
-        (
-            &of_tolerance("energy residual relative to the largest energy", tolerated),
-            evidence.energy.relative_residual,
-            Form::Power,
-        ),
-        Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
+        (&quantity, evidence.energy.relative_residual, Form::Power),
+        bounds,
         residual_remedy(evidence, tolerated),
     ))
 }

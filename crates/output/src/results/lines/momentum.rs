@@ -1,7 +1,7 @@
 //! The balance of momentum.
 
 use crate::form::Form;
-use crate::results::lines::energy::{MOST_TOLERATED, of_tolerance, residual_remedy};
+use crate::results::lines::energy::{MOST_TOLERATED, of_tolerance, permitted, residual_remedy};
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
 
@@ -9,29 +9,25 @@ use crate::verdict::{Bounds, Line};
 /// the rounding of the solves, some 1e-16 a step, summed over up to a million steps.
 const RESIDUAL: f64 = 1e-9;
 
-/// What the iterations may leave, relative to the largest momentum.
-fn tolerated(evidence: &Evidence) -> f64 {
-    match evidence.momentum.size > 0.0 {
-        true => evidence.last.ledger.tolerated.momentum / evidence.momentum.size,
+/// What the iterations may leave, and what rounding may, relative to the largest momentum.
+fn left(evidence: &Evidence) -> [f64; 2] {
+    let ledger = &evidence.last.ledger;
+    [&ledger.tolerated, &ledger.rounding].map(|left| match evidence.momentum.size > 0.0 {
+        true => left.momentum / evidence.momentum.size,
         false => 0.0,
-    }
+    })
 }
 
 /// Change of the momentum without an impulse from outside.
 pub(super) fn residual(evidence: &Evidence) -> Finding {
-    let tolerated = tolerated(evidence);
+    let left = left(evidence);
+    let quantity = "momentum residual relative to the largest momentum";
+    let (quantity, bounds) = permitted(quantity, left);
     Finding::Line(Line::new(
         "momentum-residual",
-        (
-            &of_tolerance(
-                "momentum residual relative to the largest momentum",
-                tolerated,
-            ),
-            evidence.momentum.relative_residual,
-            Form::Power,
-        ),
-        Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
-        residual_remedy(evidence, tolerated),
+        (&quantity, evidence.momentum.relative_residual, Form::Power),
+        bounds,
+        residual_remedy(evidence, left[0]),
     ))
 }
 
@@ -43,17 +39,14 @@ pub(super) fn angular(evidence: &Evidence) -> Finding {
         return Finding::Absent;
     };
     // its size is at least the momentum times the largest arm, the tolerated forces have this arm too
-    let tolerated = tolerated(evidence);
+    let left = left(evidence);
     let quantity = "residual of the angular momentum relative to the largest";
+    let (quantity, bounds) = permitted(quantity, left);
     Finding::Line(Line::new(
         "angular-momentum-residual",
-        (
-            &of_tolerance(quantity, tolerated),
-            angular.relative_residual,
-            Form::Power,
-        ),
-        Bounds::Bad((RESIDUAL + tolerated).min(MOST_TOLERATED)),
-        residual_remedy(evidence, tolerated),
+        (&quantity, angular.relative_residual, Form::Power),
+        bounds,
+        residual_remedy(evidence, left[0]),
     ))
 }
 

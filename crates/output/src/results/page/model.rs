@@ -176,6 +176,7 @@ fn fields(system: &System, has_plastic: bool) -> Vec<Field> {
             "cell",
             false,
         ),
+        field("principal", "principal stress of cells", "Pa", "cell", true),
         field("pressure", "pressure of cells", "Pa", "cell", true),
     ];
     if has_plastic {
@@ -289,6 +290,10 @@ fn frame(
     values.insert(
         "von_mises",
         block.levels(of_cells(&still.von_mises).into_iter(), COARSE),
+    );
+    values.insert(
+        "principal",
+        block.levels(of_cells(&still.principal).into_iter(), COARSE),
     );
     values.insert(
         "pressure",

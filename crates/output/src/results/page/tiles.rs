@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use carom_bodies::Body;
 use carom_dynamics::System;
 use serde::Serialize;
 
@@ -295,33 +296,36 @@ fn energy(energy: &Energy) -> Tile {
     tile("Energy lost", part(lost), note, "balances")
 }
 
-/// Largest values of the fields at the kept instants.
+/// Largest values of the fields: of stresses over the steps, of others at the kept instants.
 fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
     let kept = format!("largest of {} kept instants", maxima.instants);
+    let steps = results.stressed.schedule();
     let cells = "mean of a cell";
+    let sections = maxima.von_mises.as_ref();
+    let sections = sections.map_or(cells, |maximum| place_in_section(&results.system, maximum));
     let all = [
         (
             ("Largest von Mises stress", "Pa"),
             (&maxima.von_mises, "von_mises"),
-            cells,
+            (sections, &steps),
         ),
         (
             ("Largest principal strain", ""),
             (&maxima.strain, ""),
-            "a cell",
+            ("a cell", &kept),
         ),
         (
             ("Largest plastic strain", ""),
             (&maxima.plastic_strain, "plastic"),
-            cells,
+            (cells, &kept),
         ),
         (
             ("Largest displacement", "m"),
             (&maxima.displacement, "displacement"),
-            "a node",
+            ("a node", &kept),
         ),
     ];
-    let one = |((label, unit), (maximum, field), of): (_, (&Option<Maximum>, _), _)| {
+    let one = |((label, unit), (maximum, field), (of, over)): (_, (&Option<Maximum>, _), _)| {
         let maximum = maximum.as_ref()?;
         let body = match maximum.body.as_str() {
             "" => String::new(),
@@ -329,7 +333,7 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
         };
         let place = coordinates(&results.system, &maximum.place);
         let time = clock(results, maximum.time);
-        let note = format!("{of}{body} at {place}, t = {time}; {kept}");
+        let note = format!("{of}{body} at {place}, t = {time}; {over}");
         Some(Tile {
             time: Some(maximum.time),
             field,
@@ -337,6 +341,18 @@ fn of_fields(results: &Results, maxima: &Maxima) -> Vec<Tile> {
         })
     };
     all.into_iter().filter_map(one).collect()
+}
+
+/// Where in a cell of its body a largest stress is.
+fn place_in_section(system: &System, maximum: &Maximum) -> &'static str {
+    let mut bodies = system.bodies.iter();
+    let body = bodies.find(|body| body.name() == maximum.body);
+    match body {
+        Some(Body::Shell(_)) => "the largest through the thickness",
+        Some(Body::Beam(_) | Body::LargeBeam(_)) => "the largest in a section",
+        Some(Body::Reduced(reduced)) if reduced.has_sections() => "the largest in a section",
+        _ => "mean of a cell",
+    }
 }
 
 /// A time; in a run that begins with a static stage, whose time is none, that since its end.

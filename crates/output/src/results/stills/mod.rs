@@ -87,7 +87,7 @@ impl Stills {
     /// Of a run up to the time `end`, s.
     pub(crate) fn new(system: &System, end: f64) -> Stills {
         let seen = Seen::new(system);
-        let bytes = 24 * seen.nodes.len() + 12 * seen.cells.len() + seen.body_of_cell.len() / 4;
+        let bytes = 24 * seen.nodes.len() + 16 * seen.cells.len() + seen.body_of_cell.len() / 4;
         let by_memory = BYTES / bytes.max(1) / FILM;
         let begin = dynamics_begin(system, end);
         let is_explicit = system.schemes.iter().all(|s| s.get().is_explicit());

@@ -23,6 +23,8 @@ pub(crate) struct Still {
     pub(crate) contact: Vec<(f32, u8)>,
     /// Equivalent stress of the cells, Pa.
     pub(crate) von_mises: Vec<f32>,
+    /// The principal stress of the largest magnitude of the cells, positive in tension, Pa.
+    pub(crate) principal: Vec<f32>,
     /// Mean pressure of the cells, positive in compression, Pa.
     pub(crate) pressure: Vec<f32>,
     /// Equivalent plastic strain of the cells; none without plasticity.
@@ -31,8 +33,8 @@ pub(crate) struct Still {
     pub(crate) deleted: Option<Vec<bool>>,
     /// Largest equivalent stress (Pa), plastic strain and magnitude of a principal strain of all cells.
     pub(crate) largest: [Option<Largest>; 3],
-    /// Largest equivalent stress (Pa) and plastic strain of each body.
-    pub(crate) of_bodies: Vec<[Option<f64>; 2]>,
+    /// Largest equivalent stress (Pa) and plastic strain of each body, each with its cell among those of all bodies.
+    pub(crate) of_bodies: Vec<[Option<(f64, u32)>; 2]>,
     /// Kinetic energy ½ Σ m |v|² of each body with lumped masses, J.
     pub(crate) kinetic: Vec<f64>,
     /// Strain energy of each body, J; not finite where a body has none at this state.
@@ -61,11 +63,21 @@ impl Still {
         self.time.is_finite()
             && [self.moved.len(), self.speed.len()] == [nodes; 2]
             && self.contact.len() == contact
-            && [self.von_mises.len(), self.pressure.len()] == [cells; 2]
+            && [
+                self.von_mises.len(),
+                self.principal.len(),
+                self.pressure.len(),
+            ] == [cells; 3]
             && self.plastic.as_ref().is_none_or(|own| own.len() == cells)
             && self.deleted.as_ref().is_none_or(|own| own.len() == all)
             && [self.kinetic.len(), self.strain.len(), self.of_bodies.len()] == [bodies; 3]
             && largest.into_iter().all(|one| (one.cell as usize) < all)
+            && self
+                .of_bodies
+                .iter()
+                .flatten()
+                .flatten()
+                .all(|(_, cell)| (*cell as usize) < all)
     }
 
     /// Of an accepted state.
@@ -85,7 +97,14 @@ impl Still {
         });
         let bodies = all_bodies(system, &motion.history);
         let stress = cell_stresses(&bodies, &motion.u);
-        let von_mises = Bent::new(system, motion, &stress).von_mises(&stress);
+        let bent = Bent::new(system, motion, &stress);
+        let von_mises = bent.von_mises(&stress);
+        let principal = bent.principal(&stress).into_iter();
+        let principal = principal.map(|[largest, _, smallest]| match -smallest > largest {
+            true => smallest,
+            false => largest,
+        });
+        let principal: Vec<f64> = principal.collect();
         let plastic = plastic_strains(&bodies);
         let deleted = deleted(system, &motion.history);
         let shown = |values: &[f64]| -> Vec<f32> {
@@ -112,6 +131,7 @@ impl Still {
             speed: speed.collect(),
             contact: contact(system, seen, interface),
             von_mises: shown(&von_mises),
+            principal: shown(&principal),
             pressure: shown(&pressure),
             plastic: plastic.as_deref().map(shown),
             largest: [
@@ -147,17 +167,19 @@ fn largest(values: &[f64], is_there: impl Fn(usize) -> bool) -> Option<(f64, u32
     best.0.is_finite().then_some(best)
 }
 
-/// The largest of the values of the cells of each body that are there; none of a body without such values.
+/// The largest of the values of the cells of each body that are there, and its cell; none of a body without such values.
 fn by_body(
     values: &[f64],
     (seen, bodies): (&Seen, usize),
     is_there: impl Fn(usize) -> bool,
-) -> Vec<Option<f64>> {
-    let mut most: Vec<Option<f64>> = vec![None; bodies];
+) -> Vec<Option<(f64, u32)>> {
+    let mut most: Vec<Option<(f64, u32)>> = vec![None; bodies];
     for (cell, (value, body)) in values.iter().zip(&seen.body_of_cell).enumerate() {
         if value.is_finite() && is_there(cell) {
             let most = &mut most[*body as usize];
-            *most = Some(most.map_or(*value, |most: f64| most.max(*value)));
+            if most.is_none_or(|(most, _)| *value > most) {
+                *most = Some((*value, cell as u32));
+            }
         }
     }
     most
