@@ -260,7 +260,7 @@ fn closing(system: &System, part: Option<&Range<usize>>) -> usize {
     let rows = &pairing.rows;
     let closes = |point: &usize| {
         let rate = rows.product(*point, v) + rows.rate(*point);
-        rows.gap(*point) + STEPS * system.dt * rate.min(0.0) <= system.tolerance
+        rows.gap(*point) + STEPS * system.dt * rate.min(0.0) <= system.tolerance_at(*point)
     };
     let inside = |point: &usize| {
         let mut unknowns = rows.row(*point).0.iter();

@@ -18,6 +18,9 @@ const RESOLVED: f64 = 4.0;
 /// surface that turns: 0.99 is a force that swings by 8 degrees in the mean square.
 const STEADY: f64 = 0.99;
 
+/// Relative difference of two forces up to which the later one is not the larger one: rounding must not choose the instant of the peak.
+pub(crate) const TIE: f64 = 1e-12;
+
 /// Why the restitution of an impact means nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NoRestitution {
@@ -200,7 +203,7 @@ impl OpenImpact {
         }
         self.steps = if given.active { self.steps + 1 } else { 0 };
         self.holds_peak &= given.active;
-        if given.force > self.peak_force {
+        if given.force > self.peak_force * (1.0 + TIE) {
             (self.peak_force, self.peak_time) = (given.force, given.span[1]);
             self.holds_peak = true;
         }

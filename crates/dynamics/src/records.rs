@@ -4,7 +4,7 @@ use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
 use crate::chatter::{Closing, TREMBLE, Waiting, chatter};
-use crate::impact::{Given, Impact, NoRestitution, OpenImpact};
+use crate::impact::{Given, Impact, NoRestitution, OpenImpact, TIE};
 use crate::report::ContactReport;
 use crate::small::{Largest, Smallness};
 use crate::step_map::Impulse;
@@ -349,7 +349,7 @@ impl Records {
         if report.gap.is_finite() {
             record.penetration = record.penetration.max(-report.gap);
         }
-        if report.force > record.peak_force {
+        if report.force > record.peak_force * (1.0 + TIE) {
             (record.peak_force, record.peak_time) = (report.force, step.span[1]);
             record.peak_closed = report.closed as u64;
             let is_sharp = |point: &usize| step.forces[1][*point] != 0.0 && system.is_sharp(*point);

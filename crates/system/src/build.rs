@@ -27,6 +27,7 @@ use crate::numbering::{Numbering, numbering};
 use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::system::{System, part_of};
+use crate::tolerances::{tolerance, tolerances};
 use crate::turning::TurningRows;
 
 impl System {
@@ -268,7 +269,8 @@ impl System {
             part_of_body,
             origin,
             about,
-            tolerance: (1e-12 * model.length()).max(model.mesh.rounding()),
+            tolerance: tolerance(model.length(), model.mesh.rounding()),
+            tolerances: tolerances(&model, &touching),
             axisymmetric,
             dim,
             mesh_node,

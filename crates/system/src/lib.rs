@@ -39,6 +39,7 @@ mod sliding;
 mod solver;
 mod stability;
 mod system;
+mod tolerances;
 mod turning;
 
 pub use adaptive::{Adaptive, Closing};

@@ -264,6 +264,7 @@ impl System {
             of_many: self.of_many.clone(),
             first_point: self.first_point.clone(),
             tolerance: self.tolerance,
+            tolerances: self.tolerances.clone(),
             scheme: self.scheme,
             schemes: self.schemes.clone(),
             zone_of_body: self.zone_of_body.clone(),

@@ -97,9 +97,11 @@ pub struct System {
     pub(crate) of_many: Vec<bool>,
     /// First contact point of each contact in the arrays over all points, and one end more.
     pub first_point: Vec<usize>,
-    /// Gap below which a point counts as closed, m: 1e-12 of the length of the model ([`Model::length`](crate::Model::length)), or the
+    /// Length of the model that counts as none, m: 1e-12 of its length ([`Model::length`](crate::Model::length)), or the
     /// rounding of its coordinates ([`Mesh::rounding`](carom_mesh::Mesh::rounding)) where that is larger.
     pub tolerance: f64,
+    /// Gap below which a point of each contact counts as closed, m: the same of the bodies that it may touch, since how large others are says nothing of a gap.
+    pub tolerances: Vec<f64>,
     /// Time scheme; of several the first one.
     pub scheme: Scheme,
     /// The time schemes, each once.
@@ -211,6 +213,11 @@ impl System {
     /// Index of the contact of a contact point.
     pub fn contact_of(&self, point: usize) -> usize {
         self.first_point.partition_point(|&first| first <= point) - 1
+    }
+
+    /// Gap below which a point counts as closed, m.
+    pub fn tolerance_at(&self, point: usize) -> f64 {
+        self.tolerances[self.contact_of(point)]
     }
 
     /// The contact and the place in it of a contact point.

@@ -218,8 +218,9 @@ impl Between {
             let law = &system.point(point).0.law;
             let rows = &self.pairing.rows;
             let captured = (rows.gap(point), rows.product(point, &self.start[1]));
-            let chosen = told(law, captured, dt, system.tolerance).unwrap_or_else(|| {
-                let near = approaches(captured, dt, system.tolerance);
+            let tolerance = system.tolerance_at(point);
+            let chosen = told(law, captured, dt, tolerance).unwrap_or_else(|| {
+                let near = approaches(captured, dt, tolerance);
                 near || self.state.interface.force[point] != 0.0
             });
             if chosen {
@@ -317,7 +318,7 @@ impl Between {
                     start: 0.0,
                     gap_free: gap,
                     dt,
-                    tolerance: system.tolerance,
+                    tolerance: system.tolerance_at(point),
                     crush: 0.0,
                 },
                 rate_free: self.rates[i] - of_forces.sum::<f64>(),

@@ -58,7 +58,8 @@ time = {{ static = {{ end = 1.0, steps = 2 }}, end = 1.0 }}
     );
 }
 
-/// Rigid stamps on an elastic block, in the plane and in space, with friction and without: the block bears their weight, and they stay there in the dynamics.
+/// Rigid stamps on an elastic block, in the plane and in space, with friction, or guided without it: the block bears their weight, and they stay there in the
+/// dynamics.
 #[test]
 fn a_rigid_stamp_rests_on_an_elastic_block() {
     let plane = r#"
@@ -77,8 +78,12 @@ body.die = { region = "die", material = "m", rigid = {} }
 support.floor = { on = "block.bottom", fix = ["x", "y", "z"] }
 load.weight = { acceleration = [0.0, 0.0, -9.81] }
 "#;
-    for (model, axis, volume) in [(plane, "y", 0.54 * 0.3), (space, "z", 0.5 * 0.4 * 0.3)] {
-        for friction in ["", ", friction.coulomb = 0.3"] {
+    for (model, axis, volume, held) in [
+        (plane, "y", 0.54 * 0.3, "[\"x\"]"),
+        (space, "z", 0.5 * 0.4 * 0.3, "[\"x\", \"y\", \"rz\"]"),
+    ] {
+        let guide = format!("support.guide = {{ on = \"die\", fix = {held} }}");
+        for (friction, guide) in [("", &guide[..]), (", friction.coulomb = 0.3", "")] {
             for sides in [
                 "secondary = \"block.top\", primary = \"die.bottom\"",
                 "secondary = \"die.bottom\", primary = \"block.top\"",
@@ -87,6 +92,7 @@ load.weight = { acceleration = [0.0, 0.0, -9.81] }
                     r#"
 carom = 1
 {model}
+{guide}
 material.m = {{ density = 1000.0, elastic = {{ young = 1e7, poisson = 0.2 }} }}
 contact.c = {{ {sides}, law.velocity = {{}}{friction} }}
 time = {{ static = {{ end = 1.0, steps = 2 }}, end = 1.005, step = 1e-4, scheme.theta.theta = 0.55 }}

@@ -62,7 +62,7 @@ impl Driver {
             return Err(self.unheld(&rigid, &c));
         };
         let way = way.min(TURN / rigid.turn(&c).max(f64::MIN_POSITIVE));
-        if way * norm(&c) <= self.gap_tolerance() {
+        if way * norm(&c) <= 100.0 * self.system.tolerance {
             return Ok(false);
         }
         let motion: Vec<f64> = c.iter().map(|c| way * c).collect();

@@ -178,7 +178,7 @@ impl Driver {
     }
 
     fn approaches(&self, point: usize) -> bool {
-        let tolerance = self.system.tolerance;
+        let tolerance = self.system.tolerance_at(point);
         match self.is_affine() {
             true => {
                 let gap = self.pairing.rows.gap(point);

@@ -174,7 +174,7 @@ impl Driver {
             start: self.map_of(self.system.contact_of(point)).start_in_way() * rate,
             gap_free,
             dt: self.moves(point),
-            tolerance: self.system.tolerance,
+            tolerance: self.system.tolerance_at(point),
             crush: self.state.interface.crush[point],
         }
     }
@@ -200,7 +200,7 @@ impl Driver {
             return Some(false);
         }
         let law = self.law(self.system.point(point).0);
-        let tolerance = self.system.tolerance;
+        let tolerance = self.system.tolerance_at(point);
         if self.between() {
             let gap = self.state.interface.gap[point];
             return law.get().watches(gap, tolerance);
@@ -266,7 +266,7 @@ impl Driver {
         let law = self.law(self.system.point(point).0);
         let least = match self.is_affine() {
             true => 0.0,
-            false => -self.gap_tolerance(),
+            false => -self.gap_tolerance(self.system.contact_of(point)),
         };
         gap < least
             && law
@@ -275,9 +275,9 @@ impl Driver {
                 != Status::Open
     }
 
-    /// Gap that counts as none where a step ends, m.
-    pub(super) fn gap_tolerance(&self) -> f64 {
-        100.0 * self.system.tolerance
+    /// Gap of a contact that counts as none where a step ends, m.
+    pub(super) fn gap_tolerance(&self, contact: usize) -> f64 {
+        100.0 * self.system.tolerances[contact]
     }
 
     /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
@@ -289,7 +289,7 @@ impl Driver {
 
     /// The same of a contact. Its forces are compared with the largest of its own.
     fn worst_point_of(&self, contact: usize) -> Option<(usize, f64)> {
-        let tolerance = self.gap_tolerance();
+        let tolerance = self.gap_tolerance(contact);
         let points = self.system.points_of(contact);
         let forces = self.next.interface.force[points.clone()].iter();
         let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));

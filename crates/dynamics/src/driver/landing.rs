@@ -13,12 +13,13 @@ impl Driver {
         let mut first = f64::INFINITY;
         for point in 0..self.system.points() {
             let (gap, flight) = (interface.gap[point], interface.flight[point]);
-            if flies((gap, flight), self.system.tolerance, (rules, largest)) {
-                let number = self.system.contact_of(point);
+            let number = self.system.contact_of(point);
+            let tolerance = self.system.tolerances[number];
+            if flies((gap, flight), tolerance, (rules, largest)) {
                 let law = self.system.contacts[number].law.get();
                 let zone = self.system.zone_of(number);
                 let way = [gap, self.rate_at_start(point), self.free_gap(point)];
-                let arrival = arrival(way, self.dt, self.system.tolerance);
+                let arrival = arrival(way, self.dt, tolerance);
                 let cut = arrival - lead(&maps.all()[zone], planned, law);
                 if cut >= rules.smallest {
                     first = first.min(cut);

@@ -306,11 +306,11 @@ impl Driver {
     /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
     pub fn may_touch(&self, dt: f64) -> bool {
         let interface = &self.state.interface;
-        let points = interface.gap.iter().zip(&interface.rate);
-        let touches = |((gap, rate), force): ((&f64, &f64), &f64)| {
-            *force != 0.0 || approaches((*gap, *rate), dt, self.system.tolerance)
+        let touches = |point: usize| {
+            let ahead = (interface.gap[point], interface.rate[point]);
+            interface.force[point] != 0.0 || approaches(ahead, dt, self.system.tolerance_at(point))
         };
-        points.zip(&interface.force).any(touches)
+        (0..self.system.points()).any(touches)
     }
 }
 

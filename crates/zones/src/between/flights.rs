@@ -10,10 +10,10 @@ use super::Between;
 impl Between {
     /// Whether a point carries a force or may do so within `dt` (s), at twice its present rate.
     pub(crate) fn may_touch(&self, dt: f64) -> bool {
-        let (interface, tolerance) = (&self.state.interface, self.system.tolerance);
+        let interface = &self.state.interface;
         let touches = |point: usize| {
             let ahead = (interface.gap[point], interface.rate[point]);
-            interface.force[point] != 0.0 || approaches(ahead, dt, tolerance)
+            interface.force[point] != 0.0 || approaches(ahead, dt, self.system.tolerance_at(point))
         };
         (0..self.system.points()).any(touches)
     }
@@ -30,7 +30,8 @@ impl Between {
         let mut first = f64::INFINITY;
         for point in 0..self.system.points() {
             let (gap, flight) = (interface.gap[point], interface.flight[point]);
-            if !flies((gap, flight), self.system.tolerance, (rules, largest)) {
+            let tolerance = self.system.tolerance_at(point);
+            if !flies((gap, flight), tolerance, (rules, largest)) {
                 continue;
             }
             let rate = rows.product(point, &self.start[1]);
@@ -44,7 +45,7 @@ impl Between {
             let contact = self.system.contact_of(point);
             let law = self.system.contacts[contact].law.get();
             let map = self.schemes[contact].get().step_map(planned);
-            let arrival = arrival([gap, rate, end], dt, self.system.tolerance);
+            let arrival = arrival([gap, rate, end], dt, tolerance);
             let cut = arrival - lead(&map, planned, law);
             if cut >= rules.smallest {
                 first = first.min(cut);

@@ -37,6 +37,17 @@ const ROUNDING: f64 = 1e-16;
 /// How far starts nearby are, in roundings of a place.
 const STARTS: [f64; 4] = [100.0, -100.0, 30.0, -30.0];
 
+/// The same where these do not tell how far apart answers are: the largest of a few differences is less than that of many.
+const MORE: [f64; 24] = {
+    let mut all = [0.0; 24];
+    let mut k = 0;
+    while k < 24 {
+        all[k] = 8.0 * (k as f64 - 11.5);
+        k += 1;
+    }
+    all
+};
+
 /// What is compared of a run.
 struct Answer {
     grade: Grade,
@@ -101,8 +112,11 @@ fn hold_all(models: impl Iterator<Item = (u64, Model)>, change: impl Fn(&Model) 
         let bound = tolerance + 100.0 * ROUNDING * place / (model.speed() * model.step());
         let [plain, changed] = [Change::default(), change].map(|change| answer_of(&model, &change));
         let mut near = Vec::new();
-        if !differences((&plain, &changed), &near, &change, bound).is_empty() {
-            let raised = STARTS.map(|roundings| Change {
+        for starts in [&STARTS[..], &MORE] {
+            if differences((&plain, &changed), &near, &change, bound).is_empty() {
+                break;
+            }
+            let raised = starts.iter().map(|roundings| Change {
                 raised: roundings * ROUNDING * place,
                 ..Change::default()
             });

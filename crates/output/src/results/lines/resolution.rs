@@ -53,6 +53,16 @@ pub(super) fn of_impulses(evidence: &Evidence) -> Finding {
     }
 }
 
+/// Relative difference of two peaks up to which neither is the largest: rounding must not choose.
+const TIE: f64 = 1e-6;
+
+/// Whether a peak is judged before another of the same contact: the larger one, and of equal ones that of fewer steps.
+fn comes_first(impact: &Impact, other: &Impact) -> bool {
+    let [own, others] = [impact, other].map(|impact| impact.peak_force);
+    own > others * (1.0 + TIE)
+        || own >= others * (1.0 - TIE) && impact.peak_steps < other.peak_steps
+}
+
 /// The impact of the largest force of each contact that comes near the largest of the run; those that have ended.
 fn peaks(evidence: &Evidence) -> Vec<Impact> {
     let records = &evidence.last.records;
@@ -61,7 +71,7 @@ fn peaks(evidence: &Evidence) -> Vec<Impact> {
         let of_contact = &mut largest[impact.contact as usize];
         if of_contact
             .as_ref()
-            .is_none_or(|other| other.peak_force < impact.peak_force)
+            .is_none_or(|other| comes_first(&impact, other))
         {
             *of_contact = Some(impact);
         }
