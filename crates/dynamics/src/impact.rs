@@ -21,6 +21,9 @@ const STEADY: f64 = 0.99;
 /// Relative difference of two forces up to which the later one is not the larger one: rounding must not choose the instant of the peak.
 pub(crate) const TIE: f64 = 1e-12;
 
+/// Part of the largest force so far up to which a force is none: whether what rounding leaves is a force or not must not decide how long a contact was closed.
+const NOTHING: f64 = 1e-9;
+
 /// Why the restitution of an impact means nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NoRestitution {
@@ -201,8 +204,9 @@ impl OpenImpact {
             // radial forces of a full turn cancel
             (impulse[0], normal[0]) = (0.0, 0.0);
         }
-        self.steps = if given.active { self.steps + 1 } else { 0 };
-        self.holds_peak &= given.active;
+        let presses = given.active && given.force > NOTHING * self.peak_force;
+        self.steps = if presses { self.steps + 1 } else { 0 };
+        self.holds_peak &= presses;
         if given.force > self.peak_force * (1.0 + TIE) {
             (self.peak_force, self.peak_time) = (given.force, given.span[1]);
             self.holds_peak = true;

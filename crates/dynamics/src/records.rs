@@ -1,6 +1,5 @@
 //! Extrema, impulses and impacts, gathered at every step whatever is written.
 
-use carom_bodies::Body;
 use serde::{Deserialize, Serialize};
 
 use crate::chatter::{Closing, TREMBLE, Waiting, chatter};
@@ -205,13 +204,6 @@ impl ContactRecord {
     }
 }
 
-/// Time that a wave needs to pass over the smallest element, of the slower side of a contact, s.
-fn passage(system: &System, contact: usize) -> f64 {
-    let bodies = system.touching[contact].iter();
-    let bodies = bodies.map(|&body| &system.bodies[body]);
-    bodies.map(Body::passage).fold(0.0, f64::max)
-}
-
 /// What a step adds to the record of a contact.
 pub struct Step<'a> {
     /// Time at its start and end, s.
@@ -336,7 +328,7 @@ impl Records {
                 dt,
                 forces: step.forces,
                 least: TREMBLE * record.peak_force / report.closed.max(1) as f64,
-                passage: passage(system, contact),
+                passage: system.passages[contact],
             };
             let known = (&mut self.opened[..], &mut self.waiting[..], &self.loose[..]);
             let counted = step.count(points.clone(), known);

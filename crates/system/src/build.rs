@@ -7,12 +7,12 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, Kinematics, Reduced, Rigid};
 use carom_contact::{Contact, Frames, Places};
-use carom_mesh::Bounds;
 use carom_schemes::Scheme;
 
 use crate::assemblies::Assemblies;
 use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
 use crate::error::Error;
+use crate::extents::{diagonals, passages};
 use crate::initial::{settle, slack};
 use crate::levers::Levers;
 use crate::link_row::LinkRow;
@@ -271,6 +271,7 @@ impl System {
             about,
             tolerance: tolerance(model.length(), model.mesh.rounding()),
             tolerances: tolerances(&model, &touching),
+            passages: passages(&model, (&owners, &bodies, &touching)),
             axisymmetric,
             dim,
             mesh_node,
@@ -282,7 +283,7 @@ impl System {
             has_dashpots: bodies.iter().any(Body::has_damping),
             nodes_of_whole: x.len(),
             sharp: crate::sharp::points(&contacts, &secondary_faces, &x),
-            diagonals: body_masses.iter().map(|own| diagonal(own, &x)).collect(),
+            diagonals: diagonals((&bodies, &body_masses), &x),
             bodies,
             body_masses,
             mass,
@@ -363,15 +364,6 @@ fn undeformed(bodies: &[Body], part_of_body: &[usize], parts: usize) -> Vec<bool
             && own().all(|(body, _)| body.has_small_displacements() || body.as_discrete().is_some())
     };
     (0..parts).map(of_part).collect()
-}
-
-/// Diagonal of the box around the nodes of a body, m; zero of one without.
-fn diagonal(masses: &[(u32, f64)], x: &[[f64; 3]]) -> f64 {
-    let places = masses
-        .iter()
-        .map(|(node, _)| Bounds::of(&[x[*node as usize]]));
-    let around = places.reduce(|around, place| around.union(&place));
-    around.map_or(0.0, |around| around.diagonal())
 }
 
 /// The place nearest to zero in the box around some places, m.

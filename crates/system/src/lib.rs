@@ -13,6 +13,7 @@ mod checks;
 mod cliques;
 mod contacts;
 mod error;
+mod extents;
 mod initial;
 mod levers;
 mod link_row;

@@ -265,6 +265,7 @@ impl System {
             first_point: self.first_point.clone(),
             tolerance: self.tolerance,
             tolerances: self.tolerances.clone(),
+            passages: self.passages.clone(),
             scheme: self.scheme,
             schemes: self.schemes.clone(),
             zone_of_body: self.zone_of_body.clone(),

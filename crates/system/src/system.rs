@@ -67,7 +67,7 @@ pub struct System {
     pub has_dashpots: bool,
     /// Number of nodes of the whole model.
     pub nodes_of_whole: usize,
-    /// Diagonal of the box around the nodes of each body in the reference configuration, m; zero of a body without nodes of its own.
+    /// Diagonal of the box around the largest connected piece of each body in the reference configuration, m, with what shares nodes with it; zero without extent.
     pub diagonals: Vec<f64>,
     /// Lumped masses of the nodes of each body (system number, kg), for mean velocities.
     pub body_masses: Vec<Vec<(u32, f64)>>,
@@ -102,6 +102,8 @@ pub struct System {
     pub tolerance: f64,
     /// Gap below which a point of each contact counts as closed, m: the same of the bodies that it may touch, since how large others are says nothing of a gap.
     pub tolerances: Vec<f64>,
+    /// Time that a wave needs to pass over the smallest element at a side of each contact, of its slower side, s.
+    pub passages: Vec<f64>,
     /// Time scheme; of several the first one.
     pub scheme: Scheme,
     /// The time schemes, each once.
