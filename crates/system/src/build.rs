@@ -12,7 +12,7 @@ use carom_schemes::Scheme;
 use crate::assemblies::Assemblies;
 use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
 use crate::error::Error;
-use crate::extents::{diagonals, passages};
+use crate::extents::{NodeMasses, diagonals, passages};
 use crate::initial::{settle, slack};
 use crate::levers::Levers;
 use crate::link_row::LinkRow;
@@ -497,9 +497,6 @@ fn schemes(
     });
     Ok((schemes, zones.collect(), spans))
 }
-
-/// Lumped masses of the nodes of a body, kg.
-type NodeMasses = Vec<(u32, f64)>;
 
 /// `room`: a system vector of zeros, and one again afterwards.
 fn node_masses(

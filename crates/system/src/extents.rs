@@ -7,13 +7,13 @@ use carom_mesh::{Bounds, ElementId, Surface};
 
 use crate::model::{Model, ModelTarget};
 
+/// Lumped masses of the nodes of a body: system number, kg.
+pub(crate) type NodeMasses = Vec<(u32, f64)>;
+
 /// Diagonal of the box around the largest of the connected pieces that a body has a part in, m, by body: pieces of several bodies that share nodes deform as one, and
 /// waves run through all of them; pieces of one body that share none know nothing of each other. Of discrete elements, which join nothing, it is the box around
 /// their nodes with mass. `x`: reference places by system number, m.
-pub(crate) fn diagonals(
-    (bodies, masses): (&[Body], &[Vec<(u32, f64)>]),
-    x: &[[f64; 3]],
-) -> Vec<f64> {
+pub(crate) fn diagonals((bodies, masses): (&[Body], &[NodeMasses]), x: &[[f64; 3]]) -> Vec<f64> {
     let mut leaders: Vec<u32> = (0..x.len() as u32).collect();
     let deformable = || bodies.iter().filter(|body| body.as_discrete().is_none());
     for body in deformable() {
@@ -34,7 +34,7 @@ pub(crate) fn diagonals(
         });
     }
     let size = |around: &Bounds| Some(around.diagonal()).filter(|size| size.is_finite());
-    let mut of = |(body, own): (&Body, &Vec<(u32, f64)>)| match body.as_discrete() {
+    let of = |(body, own): (&Body, &NodeMasses)| match body.as_discrete() {
         Some(_) => {
             let places = own.iter().map(|(node, _)| Bounds::of(&[x[*node as usize]]));
             let around = places.fold(Bounds::EMPTY, |around, place| around.union(&place));
@@ -49,7 +49,7 @@ pub(crate) fn diagonals(
             largest
         }
     };
-    bodies.iter().zip(masses).map(|own| of(own)).collect()
+    bodies.iter().zip(masses).map(of).collect()
 }
 
 /// Time that a wave needs to pass over the smallest element at a side of each contact, of its slower side, s: elements elsewhere in its bodies say nothing of what closes there.
