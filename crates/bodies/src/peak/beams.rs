@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{StressedState, larger};
+use super::state::{StressedState, larger};
 use crate::SectionForces;
 use crate::beam::Beam;
 

@@ -6,14 +6,14 @@
 
 mod beams;
 mod solids;
-
-use carom_algebra::rotation::Rotation;
-use carom_algebra::tensor::Mat3;
+mod state;
 
 use crate::{Body, Resultants};
 
 use beams::BeamForces;
 use solids::MeanStrains;
+pub use state::StressedState;
+use state::{larger, von_mises};
 
 /// What a body looks for its largest stress with.
 #[derive(Debug)]
@@ -37,17 +37,6 @@ pub enum LookCost {
     General,
     /// As much as the forces of all elements, which its own steps do not compute: of a reduced body.
     Recovered,
-}
-
-/// Displacements (m) and rotations of the system, and the history of the body.
-#[derive(Clone, Copy, Debug)]
-pub struct StressedState<'a> {
-    /// Displacements, m.
-    pub u: &'a [f64],
-    /// Rotations of the nodes.
-    pub frames: &'a [Rotation],
-    /// Of this body.
-    pub history: &'a [f64],
 }
 
 impl PeakStress {
@@ -99,14 +88,6 @@ fn general(floor: f64, body: &Body, at: &StressedState) -> Option<(f64, u32)> {
     all.map(|(cell, value)| (value, cell as u32)).reduce(larger)
 }
 
-/// The larger of two values, the one with the smaller number if they are equal.
-fn larger(one: (f64, u32), other: (f64, u32)) -> (f64, u32) {
-    match other.0 > one.0 || other.0 == one.0 && other.1 < one.1 {
-        true => other,
-        false => one,
-    }
-}
-
 /// Equivalent stress of each element, Pa, in the order of [`Body::cells`].
 fn equivalent_stresses(body: &Body, at: &StressedState) -> Vec<f64> {
     let StressedState { u, frames, history } = *at;
@@ -132,13 +113,4 @@ fn through(own: &Resultants, thickness: f64) -> f64 {
     let middle = von_mises(&(own.membrane / thickness));
     let faces = own.faces.iter().map(von_mises);
     faces.fold(middle.max(own.between), f64::max)
-}
-
-/// Equivalent stress of von Mises, √(½ Σ (σ_ii - σ_jj)² + 3 Σ τ²), Pa.
-fn von_mises(s: &Mat3) -> f64 {
-    let normal = (s[(0, 0)] - s[(1, 1)]).powi(2)
-        + (s[(1, 1)] - s[(2, 2)]).powi(2)
-        + (s[(2, 2)] - s[(0, 0)]).powi(2);
-    let shear = s[(0, 1)].powi(2) + s[(1, 2)].powi(2) + s[(0, 2)].powi(2);
-    (0.5 * normal + 3.0 * shear).sqrt()
 }

@@ -4,7 +4,7 @@
 use carom_algebra::tensor::Mat3;
 use rayon::prelude::*;
 
-use super::{larger, von_mises};
+use super::state::{larger, von_mises};
 use crate::Solid;
 use crate::bar::Bar;
 use crate::block::{Block, Physics, by_nodes, call_by_nodes};
@@ -44,7 +44,9 @@ enum Stress {
 impl MeanStrains {
     /// Whether the stress of a solid is linear in its displacement.
     pub(super) fn serve(solid: &Solid) -> bool {
-        solid.finite.is_none() && solid.flowing.is_none()
+        // what bolts keep is beside the displacement
+        let bolted = !solid.layers.bolts().is_empty();
+        solid.finite.is_none() && solid.flowing.is_none() && !bolted
     }
 
     /// None of solids that they do not serve.
