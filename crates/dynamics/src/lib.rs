@@ -83,7 +83,7 @@ pub use step_map::{Impulse, Row, StepMap};
 pub use system::{
     Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelConstraint,
     ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, MomentAbout,
-    Motion, NamedSupport, NodalLoad, Nonlinear, Order, Preload, Prescribed, PrescribedTurn,
-    Refused, ReportedSupport, Solver, Support, System,
+    Motion, NamedSupport, NodalLoad, Nonlinear, NumberedForce, Order, Preload, Prescribed,
+    PrescribedTurn, Refused, ReportedSupport, Solver, Support, System,
 };
 pub use tolerated::Tolerated;

@@ -314,3 +314,39 @@ time = {{ end = 10.0, step = {step:?}, scheme.central-difference = {{}} }}
         assert!(built(&text(number(most))).is_ok());
     }
 }
+
+/// The picture of a model says where supports, loads, springs, masses and contacts are, by name.
+#[test]
+fn the_picture_of_a_model_names_what_acts_on_it() {
+    let text = r#"
+carom = 1
+mesh.generate.low.rectangle = { origin = [0.0, 0.0], size = [1.0, 0.5], elements = [4, 2] }
+mesh.generate.high.rectangle = { origin = [0.2, 0.6], size = [0.6, 0.5], elements = [3, 2] }
+material.m = { density = 1000.0, elastic = { young = 1e7, poisson = 0.3 } }
+body.low = { region = "low", material = "m", section.plane-strain.thickness = 1.0 }
+body.high = { region = "high", material = "m", section.plane-strain.thickness = 1.0 }
+support.floor = { on = "low.bottom", fix = ["x", "y"] }
+load.press = { on = "high.top", traction = [0.0, -1e4] }
+mass.bob = { mass = 2.0, at = [1.5, 0.5] }
+spring.tether = { ends = ["bob", "ground"], stiffness = 1e4 }
+contact.joint = { secondary = "high.bottom", primary = "low.top", law.velocity = {} }
+time = { end = 1e-3, step = 1e-5, scheme.theta = {} }
+"#;
+    let input = Input::from_text("case.toml", text, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    let built = build(&case, &locator, &input).unwrap();
+    let picture = carom_output::model_picture(&built.system).unwrap().unwrap();
+    for label in [
+        "low",
+        "high",
+        "support floor",
+        "load press",
+        "mass bob",
+        "spring tether",
+        "contact joint",
+    ] {
+        assert!(picture.contains(&format!(">{label}</text>")), "{label}");
+    }
+    // five nodes of the floor
+    assert_eq!(picture.matches("l-3.5,6h7z").count(), 5);
+}

@@ -4,12 +4,16 @@
 //! the far ones first, seen along a fixed direction with z upward. Models of many faces are drawn in squares, so that the
 //! picture stays small whatever the mesh. The drawing is written as SVG directly: it has no axes.
 
+mod signs;
 mod squares;
 mod tone;
+mod view;
 
 use std::fmt::Write as _;
 
+pub(crate) use self::signs::{Sign, What};
 use self::tone::{Flat, LEVELS, SHADES, Tone, Window, colour};
+use self::view::project;
 use super::scale::quantity;
 use crate::Error;
 
@@ -28,10 +32,6 @@ const FACES: usize = 2000;
 const FINE: f64 = 5.0;
 /// Height in pixels of the stripes that obstacles are drawn with.
 const STRIPE: f64 = 1.0;
-
-/// From the viewer's side: the direction in which a solid is looked at, against the line of sight, with x to the right and z
-/// upward.
-const EYE: [f64; 3] = [0.38, -0.79, 0.48];
 
 const LIGHT: [f64; 3] = [-0.2, 0.6, 0.77];
 
@@ -57,6 +57,8 @@ pub(crate) struct Frame {
     pub(crate) rims: Vec<Vec<[f64; 3]>>,
     /// Places of plane models with a contact force, m.
     pub(crate) marks: Vec<[f64; 3]>,
+    /// What acts on the model.
+    pub(crate) signs: Vec<Sign>,
 }
 
 /// What a film shows beside its frames.
@@ -173,24 +175,6 @@ fn shaded(level: usize, seen: &[([f64; 2], f64)]) -> Tone {
         level,
         shade: (light.max(0.0) * (SHADES - 1) as f64).round() as usize,
     }
-}
-
-/// Place in the plane of the picture, and how near to the viewer, m.
-fn project(dim: usize, x: &[f64; 3]) -> ([f64; 2], f64) {
-    if dim < 3 {
-        return ([x[0], x[1]], 0.0);
-    }
-    let length = EYE.iter().map(|e| e * e).sum::<f64>().sqrt();
-    let eye = EYE.map(|e| e / length);
-    let flat = eye[0].hypot(eye[1]);
-    let right = [-eye[1] / flat, eye[0] / flat, 0.0];
-    let up = [
-        eye[1] * right[2] - eye[2] * right[1],
-        eye[2] * right[0] - eye[0] * right[2],
-        eye[0] * right[1] - eye[1] * right[0],
-    ];
-    let along = |axis: [f64; 3]| (0..3).map(|i| axis[i] * x[i]).sum::<f64>();
-    ([along(right), along(up)], along(eye))
 }
 
 /// Area of a polygon, positive if it turns counter-clockwise.
@@ -327,6 +311,7 @@ fn draw_frame(scene: &Scene, frame: &Frame, flats: &[Flat], window: &Window, svg
             "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"2\" fill=\"{MARK}\"/>"
         );
     }
+    signs::draw(scene.dim, &frame.signs, window, svg);
     let _ = writeln!(
         svg,
         "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text></g>",

@@ -16,7 +16,7 @@ mod thin;
 
 pub use figure::{Axis, Curve, Figure, Panel, Role};
 pub use figures::{ContactCurves, EnergyCurves, PSEUDO_TIME, contact_figure, energy_figure};
-pub(crate) use film::{Frame, Patch, Scene, film_figure};
+pub(crate) use film::{Frame, Patch, Scene, Sign, What, film_figure};
 pub use logarithmic::{Logarithmic, Series};
 pub(crate) use model::{Shape, model_figure};
 pub use scale::{digits, quantity, rounded, scientific};

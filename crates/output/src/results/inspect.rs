@@ -6,11 +6,12 @@ use crate::Error;
 use crate::plot::{Axis, Curve, Figure, Frame, Panel, Role, Scene, film_figure};
 use crate::results::outlines::{Outlines, gap};
 use crate::results::page::quality::qualities;
+use crate::results::signs::signs;
 
 /// Height of the tick at a node, over the distance of two bodies under each other.
 const TICK: f64 = 0.4;
 
-/// The picture of a model, with its obstacles: in two and three dimensions cells are the darker the farther their shape is from that of
+/// The picture of a model, with its obstacles, and with the names of its bodies, supports, loads, masses, springs and contacts: in two and three dimensions cells are the darker the farther their shape is from that of
 /// the regular element, in one each body has a line of its own, with a tick at each node. `None` where nothing can be drawn: of points
 /// and springs alone.
 ///
@@ -29,6 +30,7 @@ pub fn model_picture(system: &System) -> Option<Result<String, Error>> {
     let place = |node: &u32| system.x[*node as usize];
     let frame = Frame {
         caption: format!("{} cells", values.len()),
+        signs: signs(system),
         ..Frame::default()
     };
     let scene = Scene {

@@ -42,6 +42,7 @@ mod rank_pieces;
 mod reduced;
 pub(crate) mod sensor;
 mod settings;
+mod signs;
 mod snapshot;
 mod spectra;
 pub(crate) mod stills;

@@ -1,4 +1,5 @@
 use super::tone::SQUARES;
+use super::view::EYE;
 use super::*;
 
 fn no_obstacle(_: f64, _: [f64; 3]) -> f64 {
