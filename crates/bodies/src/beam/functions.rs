@@ -1,6 +1,6 @@
 //! The functions of the turn between the nodes of an element ([`strain`](super::strain)).
 
-/// Square of sin φ below which f is taken by its series, whose terms left out are below 1e-14 there, with its derivatives.
+/// Square of sin φ below which f is taken by its series, whose terms left out are below 1e-16 there, those of its second derivative too.
 const SMALL: f64 = 1e-2;
 
 /// f, 1/c and h, each with its first and second derivative by σ = a·a.

@@ -148,6 +148,8 @@ impl Works {
         for i in 0..n {
             self.contact[i] = factor * vectors.contact[i];
             if !system.fixed[i] {
+                // what a static stage held and let go has no reaction any more
+                (self.own[i], self.held[i], self.reaction[i]) = (0.0, 0.0, 0.0);
                 continue;
             }
             let inside = vectors.inertia[i] + vectors.balanced[i] + vectors.damping[i];
