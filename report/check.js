@@ -32,8 +32,11 @@
     const [plot, rows] = [over, raster].map((element) => element.getBoundingClientRect());
     const apart = Math.max(Math.abs(plot.left - rows.left), Math.abs(plot.right - rows.right));
     wrong(apart > 2, `the statuses begin or end ${apart} pixels beside the plots`);
-    const whole = colours(raster);
     const at = (part) => ({ clientX: plot.left + part * plot.width, clientY: plot.top + 20, movementX: 9, bubbles: true, button: 0 });
+    // after a static stage the plots show the dynamics at first
+    over.dispatchEvent(new MouseEvent("dblclick", at(0.5)));
+    await pause(200);
+    const whole = colours(raster);
     over.dispatchEvent(new MouseEvent("mousemove", at(0.01)));
     over.dispatchEvent(new MouseEvent("mousedown", at(0.01)));
     over.dispatchEvent(new MouseEvent("mousemove", at(0.02)));
@@ -125,6 +128,24 @@
       group.value = "";
       group.dispatchEvent(new Event("change"));
     }
+    const names = document.querySelector("#model-names input");
+    wrong(Boolean(names) !== (head.model.signs.length > 0), "the choice of names");
+    if (names) {
+      const marks = () => [...document.querySelectorAll(".marks path")].filter((path) => path.getAttribute("d")).length;
+      const texts = () => [...document.querySelectorAll(".marks text")].filter((text) => text.style.display !== "none");
+      if (!names.checked) names.click();
+      const marked = head.model.signs.filter(({ what }) => !["body", "contact"].includes(what)).length;
+      wrong(!(await until(() => texts().length === head.model.signs.length)), `${texts().length} names, not ${head.model.signs.length}`);
+      wrong(marks() !== marked, `${marks()} marks of supports, loads, masses and springs, not ${marked}`);
+      const box = viewer.holder.getBoundingClientRect();
+      const inside = texts().filter((text) => {
+        const { left, top } = text.getBoundingClientRect();
+        return left >= box.left && left <= box.right && top >= box.top - 20 && top <= box.bottom;
+      });
+      wrong(inside.length === 0, "no name is beside the model");
+      names.click();
+      wrong(!(await until(() => texts().length === 0)), "the names stay");
+    }
     const tile = document.querySelector('.tile[data-field="von_mises"]');
     const stress = head.model.frames.findIndex((frame) => frame.kinds.includes("largest stress"));
     wrong(Boolean(tile) !== stress >= 0, "the tile of the largest stress");
@@ -132,7 +153,9 @@
       viewer.go(stress === 0 ? last : 0);
       viewer.colour("displacement");
       tile.click();
-      wrong(viewer.choice.frame !== stress || viewer.choice.field !== "von_mises", "the tile does not show the largest stress");
+      // that of all steps, of which the kept instant nearest to it is shown
+      const nearest = viewer.instants.nearest(Number(tile.dataset.time));
+      wrong(viewer.choice.frame !== nearest || viewer.choice.field !== "von_mises", "the tile does not show the largest stress");
       wrong(!viewer.parts.peak.visible, "nothing marks the largest stress");
       const marked = picture();
       viewer.parts.peak.visible = false;

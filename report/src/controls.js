@@ -125,6 +125,19 @@ export function controls(viewer) {
     }),
     check("undeformed", false, drawing((on) => (parts.ghost.visible = on))),
   );
+  const { shown, signs } = viewer.marks;
+  const of = (what) => signs.some((sign) => what.includes(sign.what));
+  if (of(["support", "load", "mass", "link"])) {
+    const title = "supports green, loads red, masses violet, springs and bolts brown; they show through the model";
+    const marks = check("supports and loads", shown.marks, drawing((on) => (shown.marks = on)));
+    marks.title = title;
+    settings.append(marks);
+  }
+  if (signs.length > 0) {
+    const names = check("names", shown.names, drawing((on) => (shown.names = on)));
+    names.id = "model-names";
+    settings.append(names);
+  }
   if (model.groups.length > 0) {
     const names = model.groups.map((group) => [group.name, group.name]);
     const group = select("group", [["", "none"], ...names], (name) => {
@@ -137,7 +150,10 @@ export function controls(viewer) {
   }
   if (model.contacts.length > 0) {
     const title = "secondary side red, primary side blue";
-    const surfaces = check("contact surfaces", false, drawing((on) => parts.toggle(parts.surfaces, on)));
+    const surfaces = check("contact surfaces", false, drawing((on) => {
+      shown.contacts = on;
+      parts.toggle(parts.surfaces, on);
+    }));
     surfaces.title = title;
     settings.append(surfaces, check("contact forces", true, drawing((on) => parts.toggle(parts.forces, on))));
   }

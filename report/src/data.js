@@ -1,7 +1,7 @@
 // The data of the page: a JSON head, and one block of compressed arrays that it refers to. The layout is documented in
 // crates/output/src/page/schema.rs.
 
-export const SCHEMA = 3;
+export const SCHEMA = 4;
 
 /** The head of the page; null on a page that has none. */
 export function head() {

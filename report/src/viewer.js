@@ -6,6 +6,7 @@ import { gradient } from "./colours.js";
 import { quantity } from "./format.js";
 import { controls } from "./controls.js";
 import { Instants } from "./instants.js";
+import { Marks } from "./marks.js";
 import { ModelScene } from "./scene.js";
 import { onTheme, series } from "./theme.js";
 
@@ -45,6 +46,7 @@ class Viewer {
     if (this.model.dimension === 1) this.holder.classList.add("low");
     this.holder.append(this.renderer.domElement);
     this.renderer.domElement.setAttribute("aria-label", "the model; drag to turn it, scroll to zoom");
+    this.marks = new Marks(page.model, read, this.holder);
     this.camera = new OrthographicCamera();
     this.orbit = new OrbitControls(this.camera, this.renderer.domElement);
     this.orbit.addEventListener("change", () => this.render());
@@ -116,6 +118,9 @@ class Viewer {
       requestAnimationFrame(() => {
         this.pending = false;
         this.renderer.render(this.scene, this.camera);
+        const { places, material } = this.parts;
+        const size = [this.holder.clientWidth, this.holder.clientHeight];
+        this.marks.draw(places, this.camera, size, material.uniforms.section.value);
       });
     }
   }

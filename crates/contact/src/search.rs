@@ -171,7 +171,7 @@ impl Search {
             .closest((places, faces), view, stand, f64::INFINITY)
             .filter(|(foot, face)| {
                 faces_point((stand, foot), face, view.is_none(), || {
-                    diagonal(places, face)
+                    places.of_face(face)
                 })
             });
         if let (true, Some((foot, face)), Some(item)) = (self.watches, &found, self.kept[slot].face)

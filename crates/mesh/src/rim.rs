@@ -14,6 +14,8 @@ const ON: f64 = 1e-9;
 pub struct Rim {
     pub(crate) border: Marks,
     pub(crate) ridge: Marks,
+    /// Bits of the corners at which the rim turns.
+    pub(crate) turns: u8,
 }
 
 /// Some edges and corners of a face.
@@ -31,6 +33,15 @@ impl Rim {
         self.border.hold(kind, xi)
     }
 
+    /// The edge of the rim on which it is, between whose ends and beyond the surface ends in one direction alone: none where the rim turns, and
+    /// at a corner of the face that the rim only passes.
+    pub fn edge(self, kind: Kind, xi: &[f64; 3]) -> Option<usize> {
+        if kind.table().dim < 2 || (0..edges(kind)).any(|k| has(self.turns, k) && is_at(kind, k, xi)) {
+            return None;
+        }
+        (0..edges(kind)).find(|k| has(self.border.edges, *k) && is_on(kind, *k, xi))
+    }
+
     /// Whether it is on a sharp ridge.
     pub fn is_ridge(self, kind: Kind, xi: &[f64; 3]) -> bool {
         self.ridge.hold(kind, xi)
@@ -39,11 +50,14 @@ impl Rim {
 
 impl Marks {
     fn hold(self, kind: Kind, xi: &[f64; 3]) -> bool {
-        let has = |bits: u8, k: usize| bits >> k & 1 == 1;
         (0..edges(kind)).any(|k| {
             has(self.edges, k) && is_on(kind, k, xi) || has(self.corners, k) && is_at(kind, k, xi)
         })
     }
+}
+
+fn has(bits: u8, k: usize) -> bool {
+    bits >> k & 1 == 1
 }
 
 /// Whether a foot on the boundary of a face of this kind lies on an edge of it.

@@ -8,6 +8,9 @@ use crate::rim::{Marks, edges};
 use crate::vector::{difference, dot};
 use crate::{Face, Rim};
 
+/// Cosine of the angle from which on a rim turns, 45°: what a rim that turns less lets beside it along one of its edges is no further over the other.
+const TURN: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 /// The largest number of edges of a face.
 const EDGES: usize = 4;
 
@@ -38,10 +41,13 @@ impl Rim {
         let border = Marked::new(border.map(|(ends, _)| *ends));
         let ridge = of_edge.iter().filter(|(_, all)| is_sharp(all));
         let ridge = Marked::new(ridge.map(|(ends, _)| *ends));
+        let turns = turns(faces, &border, &x, &same);
         for face in faces {
+            let turned = |corner: &usize| turns.contains(&same(face.nodes[*corner]));
             face.rim = Rim {
                 border: border.of(face, &same),
                 ridge: ridge.of(face, &same),
+                turns: bits((0..edges(face.kind)).filter(turned)),
             };
         }
     }
@@ -71,6 +77,38 @@ impl Marked {
             corners: bits(all.filter(has_node)),
         }
     }
+}
+
+/// The nodes at which the rim of a surface of faces turns: those of its lines that meet there are not two, or not in line.
+fn turns(
+    faces: &[Face],
+    border: &Marked,
+    x: &impl Fn(u32) -> [f64; 3],
+    same: &impl Fn(u32) -> u32,
+) -> BTreeSet<u32> {
+    let mut ways: BTreeMap<u32, Vec<[f64; 3]>> = BTreeMap::new();
+    for face in faces.iter().filter(|face| face.kind.table().dim == 2) {
+        for edge in 0..edges(face.kind) {
+            if !border.edges.contains(&ends(face, edge, same)) {
+                continue;
+            }
+            let nodes = face.kind.table().faces[edge].nodes;
+            let [a, b] = [nodes[0], nodes[1]].map(|k| face.nodes[k]);
+            for (from, to) in [(a, b), (b, a)] {
+                let way = difference(&x(to), &x(from));
+                ways.entry(same(from)).or_default().push(way);
+            }
+        }
+    }
+    let is_turn = |ways: &[[f64; 3]]| match ways {
+        [one, other] => {
+            let lengths = (dot(one, one) * dot(other, other)).sqrt();
+            dot(one, other) > -TURN * lengths
+        }
+        _ => true,
+    };
+    let turning = ways.into_iter().filter(|(_, ways)| is_turn(ways));
+    turning.map(|(node, _)| node).collect()
 }
 
 /// A face at the middle of one of its edges.
@@ -217,6 +255,38 @@ mod tests {
         assert!(!holds(&top, [0.5, 0.0]) && holds(&top, [0.4, 0.6]) && holds(&top, [0.0, 0.2]));
         assert_eq!(across(&faces)[1], [None, None, Some(2), Some(0)]);
         assert_eq!(across(&faces)[2], [Some(1), None, None, None]);
+    }
+
+    #[test]
+    fn a_rim_turns_at_its_corners_and_where_it_meets_itself() {
+        // two triangles share the corner 1 of a square, whose side 1-2 goes on straight to 4 beside a third
+        //   3 - 2
+        //   | / |
+        //   0 - 1
+        //    \\ |
+        //     (4, below 1)
+        let mut faces = [
+            face(Kind::Tri3, &[0, 1, 2]),
+            face(Kind::Tri3, &[0, 2, 3]),
+            face(Kind::Tri3, &[0, 4, 1]),
+        ];
+        let x = [
+            [0.0; 3],
+            [1.0, 0.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [1.0, -0.3, 0.0],
+        ];
+        Rim::mark(&mut faces, |node| x[node as usize], |node| node);
+        let edge = |k: usize, xi: [f64; 2]| faces[k].rim.edge(Kind::Tri3, &[xi[0], xi[1], 0.0]);
+        // in the middle of the side, and at 1, where it goes straight on
+        assert_eq!(edge(0, [0.5, 0.5]), Some(1));
+        assert_eq!(edge(0, [1.0, 0.0]), Some(1));
+        assert_eq!(edge(2, [0.0, 1.0]), Some(1));
+        // the corner 2, and a diagonal inside
+        assert_eq!(edge(0, [0.0, 1.0]), None);
+        assert_eq!(edge(1, [1.0, 0.0]), None);
+        assert_eq!(edge(0, [0.3, 0.0]), None);
     }
 
     #[test]

@@ -27,6 +27,7 @@ mod interrupts;
 mod large;
 mod levels;
 mod losses;
+mod marks;
 mod means;
 mod offset;
 mod pieces;

@@ -143,6 +143,34 @@ fn a_body_that_is_held_waits_for_the_dynamics_and_is_free_then() {
     assert!(closing <= 1.0, "{closing}");
 }
 
+/// What held the body in the stage pushes no longer in the dynamics: its weight is all that moves it, v = -g t, and the balances close.
+#[test]
+fn a_body_that_was_held_under_its_weight_falls_freely() {
+    let (summary, histories) = result(
+        r#"
+carom = 1
+mesh.generate.a.rectangle = { origin = [40.0, 30.0], size = [2.0, 1.0], elements = [2, 1] }
+material.m = { density = 1000.0, elastic = { young = 1e7, poisson = 0.0 } }
+body.a = { region = "a", material = "m", section.plane-strain.thickness = 1.0, hold = true }
+load.weight.acceleration = [0.0, -9.81]
+probe.a = { on = "a", record = ["velocity"] }
+time = { end = 1.01, step = 1e-4, static = { end = 1.0, steps = 2 }, scheme.theta.theta = 0.55 }
+"#,
+    );
+    let speed = *histories["probe.a.velocity_y_m_s"].last().unwrap();
+    assert!((speed / -0.0981 - 1.0).abs() < 1e-10, "{speed}");
+    let impulses = &summary.momentum.impulses;
+    // m g t of 2000 kg over 10 ms; nothing holds it
+    assert!((impulses["loads"][1] / -196.2 - 1.0).abs() < 1e-10);
+    assert!(impulses.get("supports").is_none_or(|p| p[1].abs() < 1e-7));
+    assert!(
+        summary.momentum.relative_residual < 1e-9,
+        "{:e}",
+        summary.momentum.relative_residual
+    );
+    assert_eq!(summary.verdict.grade, carom_output::Grade::Good);
+}
+
 #[test]
 fn a_body_that_is_held_without_a_static_stage_is_refused() {
     let text = ram(", hold = true").replace("static = { end = 1.0, steps = 2 }, ", "");

@@ -94,11 +94,8 @@ impl RigidSurface {
             .tree
             .closest(x, f64::INFINITY, 0.0, |item| foot(item).distance);
         let found = closest.map(|(item, _)| (foot(item), &self.faces[item as usize]));
-        let size = |face: &Face| {
-            Bounds::of_face(face.kind, &places(&self.x, face)[..face.corners().len()]).diagonal()
-        };
         match found {
-            Some((foot, face)) if faces_point((*stand, &foot), face, true, || size(face)) => {
+            Some((foot, face)) if faces_point((*stand, &foot), face, true, || places(&self.x, face)) => {
                 Distance {
                     gap: foot.gap,
                     normal: foot.normal,

@@ -16,7 +16,7 @@ use crate::rest::{BLOCK, Rest};
 use crate::search::faces::{FaceTree, Question};
 use crate::search::group::Group;
 use crate::search::kept::Kept;
-use crate::search::{Stand, Way, diagonal, faces_point, foot_on, is_between};
+use crate::search::{Stand, Way, faces_point, foot_on, is_between};
 use crate::{Contact, Places, Search, Target};
 
 impl Contact {
@@ -155,7 +155,7 @@ impl Contact {
         if let (true, Some((foot, face)), Some(item)) =
             (group.watches, &found, group.kept[slot].face)
             && faces_point((stand, foot), face, view.is_none(), || {
-                diagonal(target.0, face)
+                target.0.of_face(face)
             })
             && is_between(target.0, foot, face)
         {
@@ -168,7 +168,7 @@ impl Contact {
         match (found, view) {
             (Some((foot, face)), _) if is_near(foot.distance) => {
                 let faces = faces_point((stand, &foot), face, view.is_none(), || {
-                    diagonal(target.0, face)
+                    target.0.of_face(face)
                 });
                 let near = faces && foot.gap - point.radius + self.offset(k) <= reach.near;
                 let stencil = near.then(|| Stencil::on_face(target.0, point, &x, &foot, face));

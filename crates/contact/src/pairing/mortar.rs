@@ -240,7 +240,7 @@ impl<'a> Sweep<'a> {
                     x: &place,
                     of: None,
                 };
-                let beside = is_beside_rim((stand, &foot), face, || Bounds::of(x).diagonal());
+                let beside = is_beside_rim((stand, &foot), face, || self.places.of_face(face));
                 if ahead && !beside && sees(&foot) {
                     let stencil = match &mut first {
                         Some(stencil) => {

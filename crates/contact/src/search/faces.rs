@@ -4,7 +4,7 @@ use carom_elements::Kind;
 use carom_mesh::{Bounds, BoxTree, Face, Projection, QUADS};
 
 use super::corners::Taken;
-use super::foot::{Own, Stand, diagonal, faces_point, foot_on, hull};
+use super::foot::{Own, Stand, faces_point, foot_on, hull};
 use super::kept::{Guess, Kept, Query, squared};
 use crate::sight::{Corners, View};
 use crate::{Places, Sight};
@@ -200,7 +200,7 @@ impl FaceTree {
             let foot = foot_on(places, faces, item, x).0;
             let seen = view.is_none_or(|view| {
                 view.shows(item, &foot, &self.normals)
-                    && faces_point((stand, &foot), face, false, || diagonal(places, face))
+                    && faces_point((stand, &foot), face, false, || places.of_face(face))
                     && !view.is_over_neighbour((item, &foot), stand, (places, faces))
             });
             if !seen {

@@ -1,6 +1,7 @@
 //! The closest point of one face, and the box around it.
 
-use carom_elements::Kind;
+use carom_algebra::tensor::Vec3;
+use carom_elements::{Kind, MAX_FACE_NODES};
 use carom_mesh::{Bounds, Face, Projection, project};
 
 use super::kept::squared;
@@ -25,17 +26,26 @@ pub(crate) struct Stand<'a> {
 pub(crate) type Own<'a> = Option<&'a dyn Fn() -> Option<[f64; 3]>>;
 
 impl Stand<'_> {
+    /// The way from a foot to the place, less its part along the normal, m.
+    fn beside(&self, foot: &Projection) -> Vec3 {
+        let way = Vec3::from(*self.x) - Vec3::from(foot.point);
+        way - Vec3::from(foot.normal) * foot.gap
+    }
+
     /// How far the place may be beyond a rim and is not beside the surface, m, if what is beside the way to it is that which its own surface
-    /// lies on: flush bodies spread, and their outermost nodes still stand for what is within both.
-    fn overhang(&self, foot: &Projection, size: f64) -> f64 {
+    /// lies on: flush bodies spread, and their outermost nodes still stand for what is within both. `outward`: the direction over the rim, none
+    /// at a corner of it.
+    fn overhang(&self, foot: &Projection, outward: Option<Vec3>, size: f64) -> f64 {
         let Some(behind) = self.of.and_then(|behind| behind()) else {
             return 0.0;
         };
-        let back = (0..3).map(|i| {
-            let sideways = self.x[i] - foot.point[i] - foot.gap * foot.normal[i];
-            sideways * (behind[i] - foot.point[i])
-        });
-        match back.sum::<f64>() < 0.0 {
+        let back = Vec3::from(behind) - Vec3::from(foot.point);
+        let beside = self.beside(foot);
+        let product = match outward {
+            Some(outward) => beside.dot(&outward) * back.dot(&outward),
+            None => beside.dot(&back),
+        };
+        match product < 0.0 {
             true => OVERHANG * size,
             false => 0.0,
         }
@@ -87,42 +97,63 @@ pub(crate) fn hull(places: &Places, face: &Face) -> Bounds {
 /// Whether a point faces the face on which its closest point lies.
 ///
 /// On an edge where the surface goes on: if the way to the point runs sideways by no more than it runs along the normal, or if the closest point
-/// is that of `all` faces and the point is behind them, in a fold. At the rim of the surface: if it does not run sideways, since a point beyond
-/// the rim is beside the surface, above its plane or below it; on a sharp ridge so is one above it. A point whose own surface reaches back over
-/// the rim may be beyond it by [`OVERHANG`]. `size`: of the face, m.
+/// is that of `all` faces and the point is behind them, in a fold. At the rim of the surface: if it does not run over the rim, since a point
+/// beyond it is beside the surface, above its plane or below it; what runs along the rim is as on other edges. On a sharp ridge so is a point
+/// above it. A point whose own surface reaches back over the rim may be beyond it by [`OVERHANG`]. `positions`: of the face, m.
 pub(crate) fn faces_point(
     (stand, foot): (Stand, &Projection),
     face: &Face,
     all: bool,
-    size: impl FnOnce() -> f64,
+    positions: impl FnOnce() -> [[f64; 3]; MAX_FACE_NODES],
 ) -> bool {
     if foot.inside || face.kind == Kind::Point1 {
         return true;
     }
-    let sideways = sideways(foot);
-    let rim = face.rim;
-    let ends =
-        rim.holds(face.kind, &foot.xi) || foot.gap > 0.0 && rim.is_ridge(face.kind, &foot.xi);
+    let whole = sideways(foot);
     let along = match foot.gap < 0.0 && all {
-        _ if ends => 0.0,
         true => f64::INFINITY,
         false => foot.gap.abs(),
     };
-    if sideways <= along {
+    let above_ridge = foot.gap > 0.0 && face.rim.is_ridge(face.kind, &foot.xi);
+    let ends = face.rim.holds(face.kind, &foot.xi) || above_ridge;
+    if whole <= if ends { 0.0 } else { along } {
         return true;
     }
-    let size = size();
-    sideways <= rounding(foot, size) || ends && sideways <= stand.overhang(foot, size)
+    let positions = positions();
+    let corners = &positions[..face.corners().len()];
+    let size = Bounds::of_face(face.kind, corners).diagonal();
+    let same = rounding(foot, size);
+    if whole <= same || !ends {
+        return whole <= same;
+    }
+    let edge = face.rim.edge(face.kind, &foot.xi).filter(|_| !above_ridge);
+    let Some(outward) = edge.map(|edge| outward(face, corners, edge, foot)) else {
+        return whole <= stand.overhang(foot, None, size);
+    };
+    let beyond = stand.beside(foot).dot(&outward).abs();
+    let beside = (whole.powi(2) - beyond.powi(2)).max(0.0).sqrt();
+    beside <= along.max(same)
+        && (beyond <= same || beyond <= stand.overhang(foot, Some(outward), size))
+}
+
+/// The direction out of a face over one of its edges, in the plane of the foot: of length 1, or 0 where the edge has no length.
+fn outward(face: &Face, corners: &[[f64; 3]], edge: usize, foot: &Projection) -> Vec3 {
+    let [a, b, ..] = face.kind.table().faces[edge].nodes[..] else {
+        return Vec3::zeros();
+    };
+    let along = Vec3::from(corners[b]) - Vec3::from(corners[a]);
+    let outward = Vec3::from(foot.normal).cross(&along);
+    outward.try_normalize(0.0).unwrap_or_default()
 }
 
 /// Whether a point is below the plane of a face and beyond the rim of the surface there.
 pub(crate) fn is_beside_rim(
     (stand, foot): (Stand, &Projection),
     face: &Face,
-    size: impl FnOnce() -> f64,
+    positions: impl FnOnce() -> [[f64; 3]; MAX_FACE_NODES],
 ) -> bool {
     let beyond = foot.gap < 0.0 && face.rim.holds(face.kind, &foot.xi);
-    beyond && !faces_point((stand, foot), face, true, size)
+    beyond && !faces_point((stand, foot), face, true, positions)
 }
 
 /// How far the way from a foot to its point runs beside the normal, m.

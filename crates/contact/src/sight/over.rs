@@ -36,7 +36,7 @@ impl View<'_> {
         others.any(|(_, other)| {
             let (across, face) = foot_on(places, faces, other, stand.x);
             across.gap > 0.0 && across.gap > stand.overhang_across(&across, diagonal(places, face))
-                || is_beside_rim((stand, &across), face, || diagonal(places, face))
+                || is_beside_rim((stand, &across), face, || places.of_face(face))
                 || across.distance < foot.distance
                     && self.is_over_neighbour((other, &across), stand, of)
         })

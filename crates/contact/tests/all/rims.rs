@@ -106,6 +106,49 @@ fn a_point_behind_a_fold_and_one_before_a_ridge_face_the_surface() {
     }
 }
 
+/// What runs along a rim from a fold that ends there is not beyond it: whether the closer face is the one or the other is a matter of rounding.
+#[test]
+fn a_point_behind_the_end_of_a_fold_at_the_rim_faces_the_surface() {
+    for (slope, sign) in [(0.3, -1.0), (-0.3, 1.0)] {
+        let at = |y: f64| {
+            let mut x = Vec::new();
+            for j in 0..2 {
+                x.extend([-1.0_f64, 0.0, 1.0].map(|x| [x, f64::from(j), slope * x.abs()]));
+            }
+            x.push([0.0, y, 0.3 * sign]);
+            let faces = [[0, 1, 4, 3], [1, 2, 5, 4]];
+            let faces = faces.map(|nodes| face(Kind::Quad4, &nodes));
+            gap(&over(faces.to_vec(), &x), 3, &x)
+        };
+        let expected = sign * 0.3 / 1.09_f64.sqrt();
+        for y in [0.0, 1e-3, 0.5, 1.0] {
+            assert!((at(y) - expected).abs() < 1e-15, "{y} {}", at(y));
+        }
+        assert_eq!([-1e-4, 1.0001, -0.5].map(at), [f64::INFINITY; 3]);
+    }
+}
+
+/// A corner of the rim that two triangles share is an end in both directions, though each triangle has one side of it.
+#[test]
+fn a_point_beyond_a_corner_that_two_triangles_share_is_beside_them() {
+    let mut x = vec![
+        [0.0; 3],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0; 3],
+    ];
+    let faces = [[0, 1, 2], [0, 2, 3]].map(|nodes| face(Kind::Tri3, &nodes));
+    for height in [0.1, -0.1] {
+        for beside in [[1.01, 1.0], [1.0, 1.01], [1.01, 1.01], [-0.01, 0.0], [0.0, -0.01]] {
+            x[4] = [beside[0], beside[1], height];
+            assert_eq!(gap(&over(faces.to_vec(), &x), 3, &x), f64::INFINITY);
+        }
+        x[4] = [1.0, 1.0, height];
+        assert!((gap(&over(faces.to_vec(), &x), 3, &x) - height).abs() < 1e-15);
+    }
+}
+
 #[test]
 fn a_point_behind_a_steep_fold_faces_it_however_far_it_is_to_the_side() {
     // the lines fall to the fold by 60°: below it the way to it runs more sideways than along their normals

@@ -26,6 +26,10 @@ const WORTH: f64 = 0.4;
 /// Steps that are fractions of the critical step have so many sizes from one to its half: equal steps know the displacement ahead.
 const RUNGS: f64 = 16.0;
 
+/// Relative difference of steps that are equal but for rounding: far from the origin, places and so lengths in elements are rounded to
+/// `1e-16 |x| / l`. A step that is the fraction [`PART`] of the critical one must not be halved for that.
+const ROUNDING: f64 = 1e-6;
+
 /// Nodes whose velocities are compared at a time.
 const NODES: usize = 4096;
 
@@ -128,7 +132,8 @@ impl Driver {
         let stable = self.stable_step();
         let halvings = self.system.nonlinear.iteration.halvings;
         let mut levels = 0..=halvings;
-        let level = levels.find(|&level| dt <= stable * (1u64 << level) as f64);
+        let whole = dt * (1.0 - ROUNDING);
+        let level = levels.find(|&level| whole <= stable * (1u64 << level) as f64);
         level.ok_or_else(|| self.shortened(dt, stable))
     }
 
@@ -148,8 +153,7 @@ impl Driver {
             true => (RUNGS * (dt / self.state.control.taken).log2()).round(),
             false => 0.0,
         };
-        // equal but for rounding
-        let rungs = (RUNGS * (dt / most).log2() - 1e-9)
+        let rungs = (RUNGS * ((dt / most).log2() - ROUNDING))
             .ceil()
             .max(last - 1.0)
             .max(0.0);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::page::block::Array;
 
 /// The version of what is written here; `report/src/data.js` has the same.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// The head of a page.
 #[derive(Debug, Serialize)]
@@ -167,6 +167,8 @@ pub struct Model {
     pub groups: Vec<Group>,
     /// Rigid obstacles.
     pub obstacles: Vec<Obstacle>,
+    /// What acts on the model, with names.
+    pub signs: Vec<Sign>,
     /// Fields beside the displacement.
     pub fields: Vec<Field>,
     /// The instants, ascending.
@@ -213,6 +215,19 @@ pub struct Obstacle {
     pub triangles: Array,
     /// Places of the ends of lines, six numbers to each.
     pub lines: Array,
+}
+
+/// A support, load, mass, link of two nodes, body or contact: a mark at its nodes and a name.
+#[derive(Debug, Serialize)]
+pub struct Sign {
+    /// `support`, `load`, `mass`, `link` (a spring, dashpot or bolt), `body` or `contact`.
+    pub what: &'static str,
+    /// Kind and name.
+    pub label: String,
+    /// Nodes of the page; of a link in pairs.
+    pub nodes: Array,
+    /// Direction of the force of a load at each node, three numbers; empty of all else.
+    pub ways: Array,
 }
 
 /// A field.

@@ -19,10 +19,12 @@ pub(crate) fn signs(system: &System) -> Vec<Sign> {
     all
 }
 
-fn sign(what: What, label: String, places: Vec<[f64; 3]>) -> Sign {
+fn sign(system: &System, what: What, label: String, nodes: Vec<u32>) -> Sign {
+    let places = nodes.iter().map(|&node| system.x[node as usize]).collect();
     Sign {
         what,
         label,
+        nodes,
         places,
         ways: Vec::new(),
     }
@@ -30,24 +32,17 @@ fn sign(what: What, label: String, places: Vec<[f64; 3]>) -> Sign {
 
 /// A body by its name, or discrete elements: masses and what joins two nodes.
 fn of_body(system: &System, body: &Body) -> Sign {
-    let mut places = Vec::new();
-    let Some(discrete) = body.as_discrete() else {
-        body.each_element(&mut |nodes| {
-            places.extend(nodes.iter().map(|&node| system.x[node as usize]));
-        });
-        return sign(What::Body, body.name().to_owned(), places);
-    };
-    let mut is_pair = true;
+    let (mut all, mut is_pair) = (Vec::new(), true);
     body.each_element(&mut |nodes| {
         is_pair &= nodes.len() == 2;
-        places.extend(nodes.iter().map(|&node| system.x[node as usize]));
+        all.extend_from_slice(nodes);
     });
+    let Some(discrete) = body.as_discrete() else {
+        return sign(system, What::Body, body.name().to_owned(), all);
+    };
     let what = if is_pair { What::Link } else { What::Mass };
-    sign(
-        what,
-        format!("{} {}", discrete.kind_name(), body.name()),
-        places,
-    )
+    let label = format!("{} {}", discrete.kind_name(), body.name());
+    sign(system, what, label, all)
 }
 
 fn supports(system: &System) -> impl Iterator<Item = Sign> {
@@ -58,12 +53,8 @@ fn supports(system: &System) -> impl Iterator<Item = Sign> {
             .map(|held| system.unknowns.node(held.unknown as usize));
         let mut nodes: Vec<u32> = nodes.collect();
         nodes.dedup();
-        let places = nodes.iter().map(|&node| system.x[node as usize]);
-        sign(
-            What::Support,
-            format!("support {}", support.name),
-            places.collect(),
-        )
+        let label = format!("support {}", support.name);
+        sign(system, What::Support, label, nodes)
     })
 }
 
@@ -73,11 +64,9 @@ fn loads(system: &System) -> impl Iterator<Item = Sign> {
     let named = given.loads.iter().filter_map(|load| {
         let name = given.load_names.get(load.named?)?;
         let NumberedForce::Dead(forces) = &load.force else {
-            let centre = load
-                .bodies
-                .first()
-                .map(|&body| of_body(system, &system.bodies[body]));
-            return centre.map(|body| sign(What::Load, format!("load {name}"), body.places));
+            let body = &system.bodies[*load.bodies.first()?];
+            let nodes = of_body(system, body).nodes;
+            return Some(sign(system, What::Load, format!("load {name}"), nodes));
         };
         let mut by_node: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
         for &(unknown, force) in forces {
@@ -86,12 +75,9 @@ fn loads(system: &System) -> impl Iterator<Item = Sign> {
                 by_node.entry(system.unknowns.node(unknown)).or_default()[axis] += force;
             }
         }
-        let mut all = sign(What::Load, format!("load {name}"), Vec::new());
-        for (node, force) in by_node {
-            all.places.push(system.x[node as usize]);
-            all.ways.push(force);
-        }
-        Some(all)
+        let (nodes, ways) = by_node.into_iter().unzip();
+        let all = sign(system, What::Load, format!("load {name}"), nodes);
+        Some(Sign { ways, ..all })
     });
     named.collect::<Vec<Sign>>().into_iter()
 }
@@ -100,21 +86,14 @@ fn loads(system: &System) -> impl Iterator<Item = Sign> {
 fn contacts(system: &System) -> Vec<Sign> {
     let mut all = Vec::new();
     for contact in &system.contacts {
-        let place = |node: &u32| system.x[*node as usize];
         let nodes = contact.points.iter().flat_map(|point| point.carriers());
-        let points: Vec<[f64; 3]> = nodes.map(|(node, _)| place(&node)).collect();
-        all.push(sign(
-            What::Contact,
-            format!("contact {}", contact.name),
-            points,
-        ));
+        let nodes = nodes.map(|(node, _)| node).collect();
+        let label = format!("contact {}", contact.name);
+        all.push(sign(system, What::Contact, label, nodes));
         if let Target::Surface(faces) = &contact.target {
             let nodes = faces.iter().flat_map(|face| face.corners());
-            all.push(sign(
-                What::Primary,
-                String::new(),
-                nodes.map(place).collect(),
-            ));
+            let nodes = nodes.copied().collect();
+            all.push(sign(system, What::Primary, String::new(), nodes));
         }
     }
     all

@@ -44,6 +44,8 @@ pub(crate) struct Sign {
     pub(crate) what: What,
     /// Kind and name, beside the places.
     pub(crate) label: String,
+    /// Numbers of the nodes at its places.
+    pub(crate) nodes: Vec<u32>,
     /// Places, m.
     pub(crate) places: Vec<[f64; 3]>,
     /// Directions of loads, one for each place, of any length.

@@ -2,6 +2,7 @@
 
 mod chosen;
 mod decimate;
+mod marks;
 pub(crate) mod model;
 mod obstacles;
 mod plots;

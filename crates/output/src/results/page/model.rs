@@ -12,7 +12,7 @@ use crate::results::cells::middle;
 use crate::results::outlines::size;
 use crate::results::page::chosen::Chosen;
 use crate::results::page::obstacles::{self, Near};
-use crate::results::page::sides;
+use crate::results::page::{marks, sides};
 use crate::results::page::surface::Surface;
 use crate::results::stills::{Seen, Still};
 
@@ -141,6 +141,7 @@ pub(crate) fn model(results: &Results, qualities: &[f64], block: &mut Block) -> 
         contacts: sides::contacts(system, (seen, &chosen), block),
         groups: sides::groups((system, &surface), (seen, &chosen), block),
         obstacles: drawn_obstacles(contacts, (system, &near), block),
+        signs: marks::marks(system, (seen, &chosen), block),
         fields: fields(system, has_plastic),
         frames,
     })
