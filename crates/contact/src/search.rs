@@ -170,9 +170,7 @@ impl Search {
         let found = self
             .closest((places, faces), view, stand, f64::INFINITY)
             .filter(|(foot, face)| {
-                faces_point((stand, foot), face, view.is_none(), || {
-                    places.of_face(face)
-                })
+                faces_point((stand, foot), face, view.is_none(), || places.of_face(face))
             });
         if let (true, Some((foot, face)), Some(item)) = (self.watches, &found, self.kept[slot].face)
             && is_between(places, foot, face)

@@ -36,7 +36,9 @@ impl Rim {
     /// The edge of the rim on which it is, between whose ends and beyond the surface ends in one direction alone: none where the rim turns, and
     /// at a corner of the face that the rim only passes.
     pub fn edge(self, kind: Kind, xi: &[f64; 3]) -> Option<usize> {
-        if kind.table().dim < 2 || (0..edges(kind)).any(|k| has(self.turns, k) && is_at(kind, k, xi)) {
+        if kind.table().dim < 2
+            || (0..edges(kind)).any(|k| has(self.turns, k) && is_at(kind, k, xi))
+        {
             return None;
         }
         (0..edges(kind)).find(|k| has(self.border.edges, *k) && is_on(kind, *k, xi))

@@ -1,5 +1,5 @@
 //! What must not change the answers of the cases of the project: the numbers of nodes and elements, the order of names, the choice of the ends of a
-//! stop, the side of a contact that is the secondary one, where the origin lies and how the axes stand.
+//! stop, the side of a contact that is the secondary one, where the origin lies (a kilometre and a thousand of them away) and how the axes stand.
 //!
 //! Twenty steps of each at its smallest, as it is and changed: largest forces and impulses of contacts, displacements at the end, and all
 //! grades. What is compared is stated with [`BOUND`]. Places are known to 1e-16 of the distance of the origin, and a displacement of twenty steps is
@@ -117,7 +117,12 @@ fn changed(list: &[Small]) {
         let one = case.answer();
         broken.extend(numbers(&case, &one));
         broken.extend(ends_of_stops(&case, &one));
-        for other in [Frame::Far(1e3), Frame::Turned, Frame::Mirrored] {
+        for other in [
+            Frame::Far(1e3),
+            Frame::Far(1e6),
+            Frame::Turned,
+            Frame::Mirrored,
+        ] {
             broken.extend(frame(&case, &one, other));
         }
         // levels name contacts by patterns

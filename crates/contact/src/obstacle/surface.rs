@@ -95,7 +95,9 @@ impl RigidSurface {
             .closest(x, f64::INFINITY, 0.0, |item| foot(item).distance);
         let found = closest.map(|(item, _)| (foot(item), &self.faces[item as usize]));
         match found {
-            Some((foot, face)) if faces_point((*stand, &foot), face, true, || places(&self.x, face)) => {
+            Some((foot, face))
+                if faces_point((*stand, &foot), face, true, || places(&self.x, face)) =>
+            {
                 Distance {
                     gap: foot.gap,
                     normal: foot.normal,

@@ -140,7 +140,13 @@ fn a_point_beyond_a_corner_that_two_triangles_share_is_beside_them() {
     ];
     let faces = [[0, 1, 2], [0, 2, 3]].map(|nodes| face(Kind::Tri3, &nodes));
     for height in [0.1, -0.1] {
-        for beside in [[1.01, 1.0], [1.0, 1.01], [1.01, 1.01], [-0.01, 0.0], [0.0, -0.01]] {
+        for beside in [
+            [1.01, 1.0],
+            [1.0, 1.01],
+            [1.01, 1.01],
+            [-0.01, 0.0],
+            [0.0, -0.01],
+        ] {
             x[4] = [beside[0], beside[1], height];
             assert_eq!(gap(&over(faces.to_vec(), &x), 3, &x), f64::INFINITY);
         }

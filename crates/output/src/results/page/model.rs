@@ -12,8 +12,8 @@ use crate::results::cells::middle;
 use crate::results::outlines::size;
 use crate::results::page::chosen::Chosen;
 use crate::results::page::obstacles::{self, Near};
-use crate::results::page::{marks, sides};
 use crate::results::page::surface::Surface;
+use crate::results::page::{marks, sides};
 use crate::results::stills::{Seen, Still};
 
 /// Numbers of all fields at all instants together, two bytes each before compression. A page of 100 000 nodes stays below 5 MB.
