@@ -125,7 +125,7 @@ fn close(built: &mut Built) -> Option<(f64, Vec<Vec<f64>>)> {
     for number in 0..system.contacts.len() {
         let start = &system.initial_displacement;
         let found = approach(system, &accelerations, (number, start));
-        let contact = &mut system.contacts[number];
+        let contact = &mut system.contacts[number].contact;
         before.push(contact.offsets.clone());
         if found.impact > system.dt && found.impact < built.end {
             first = first.min(found.impact);
@@ -144,7 +144,7 @@ fn close(built: &mut Built) -> Option<(f64, Vec<Vec<f64>>)> {
 fn open(built: &mut Built, gaps: Vec<Vec<f64>>) {
     if let Some(system) = Arc::get_mut(&mut built.system) {
         for (contact, offsets) in system.contacts.iter_mut().zip(gaps) {
-            contact.offsets = offsets;
+            contact.contact.offsets = offsets;
         }
     }
 }

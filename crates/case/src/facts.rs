@@ -497,7 +497,10 @@ fn where_it_holds(system: &System, contact: usize) -> String {
         Target::Surface(faces) => &faces[..],
         Target::Rigid(_) => &[],
     };
-    let mut faces = system.secondary_faces[contact].iter().chain(primary);
+    let mut faces = system.contacts[contact]
+        .secondary_faces
+        .iter()
+        .chain(primary);
     match faces.any(|face| face.kind.table().is_quadratic()) {
         true => format!("{place} (quadratic faces)"),
         false => place.to_string(),

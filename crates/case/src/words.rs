@@ -112,8 +112,8 @@ fn meets_first(built: &Built, approaches: &[Approach]) -> String {
         return "nothing before the end, as bodies move at the start".to_owned();
     };
     let name = |body: usize| format!("`{}`", system.bodies[body].name());
-    let (secondary, primary) = system.sides[number];
-    let both = match primary {
+    let secondary = system.contacts[number].secondary_body;
+    let both = match system.contacts[number].primary_body {
         Some(primary) if primary == secondary => format!("{} with itself", name(secondary)),
         Some(primary) => format!("{} and {}", name(secondary), name(primary)),
         None => name(secondary),

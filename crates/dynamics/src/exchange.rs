@@ -157,9 +157,9 @@ impl Exchange {
         records: &[ContactRecord],
     ) {
         for (number, record) in records.iter().enumerate() {
-            let (secondary, primary) = system.sides[number];
+            let contact = &system.contacts[number];
             if system.is_of_many(number) {
-                for &body in &system.touching[number] {
+                for &body in &contact.bodies {
                     self.parts[system.part_of_body[body]].untold = true;
                 }
                 continue;
@@ -167,7 +167,7 @@ impl Exchange {
             let impulse = axial(system, record.exchanged());
             self.largest_momentum = self.largest_momentum.max(largest(&impulse));
             let of = |body: usize| system.part_of_body[body];
-            let (one, other) = (of(secondary), primary.map(of));
+            let (one, other) = (of(contact.secondary_body), contact.primary_body.map(of));
             if Some(one) == other {
                 continue;
             }

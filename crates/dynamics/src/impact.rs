@@ -356,7 +356,8 @@ impl Side {
 
 impl Sides<'_> {
     fn of(system: &System, contact: usize) -> Sides<'_> {
-        let (secondary, primary) = system.sides[contact];
+        let pair = &system.contacts[contact];
+        let (secondary, primary) = (pair.secondary_body, pair.primary_body);
         let part = |body: usize| system.part_of_body[body];
         let sides = match (primary, system.is_of_many(contact)) {
             // no mass and no motion stands for all of them
@@ -476,7 +477,7 @@ fn each_free(system: &System, body: usize, mut visit: impl FnMut(usize, usize, f
 
 /// How long a flight lasts that ends an impact, begun at `start` (s) and last closed before this step, s.
 fn lasting(system: &System, contact: usize, (given, start): (&Given, f64)) -> f64 {
-    if let Some(time) = system.merge_within[contact] {
+    if let Some(time) = system.contacts[contact].merge_within {
         return time;
     }
     let [from, to] = given.span;
@@ -486,7 +487,7 @@ fn lasting(system: &System, contact: usize, (given, start): (&Given, f64)) -> f6
 
 /// Time that a wave takes across the longer of the two bodies of a contact (the diagonal of its box), s.
 fn crossing(system: &System, contact: usize) -> f64 {
-    let bodies = system.touching[contact].iter();
+    let bodies = system.contacts[contact].bodies.iter();
     let across = bodies.filter_map(|&body| {
         let waves = system.bodies[body].wave_speed()?;
         Some(system.diagonals[body] / waves)

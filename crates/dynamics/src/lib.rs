@@ -81,9 +81,9 @@ pub use small::{Largest, Locking, SmallSliding, SmallStrain, Smallness};
 pub use state::{InterfaceState, State};
 pub use step_map::{Impulse, Row, StepMap};
 pub use system::{
-    Adaptive, Closing, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody, ModelConstraint,
-    ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget, MomentAbout,
-    Motion, NamedSupport, NodalLoad, Nonlinear, NumberedForce, Order, Preload, Prescribed,
-    PrescribedTurn, Refused, ReportedSupport, Solver, Support, System,
+    Adaptive, Closing, ContactPair, Damping, Iteration, Load, LoadKind, Mass, Model, ModelBody,
+    ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelRigid, ModelScheme, ModelTarget,
+    MomentAbout, Motion, NamedSupport, NodalLoad, Nonlinear, NumberedForce, Order, Preload,
+    Prescribed, PrescribedTurn, Refused, ReportedSupport, Solver, Support, System,
 };
 pub use tolerated::Tolerated;

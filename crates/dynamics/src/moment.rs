@@ -23,7 +23,7 @@ pub fn moment<'a>(
     at: (&[Rotation], &[&[f64]]),
     nodal: &mut Vec<f64>,
 ) -> [f64; 3] {
-    let Some(about) = &system.moments[contact] else {
+    let Some(about) = &system.contacts[contact].moment else {
         return [0.0; 3];
     };
     nodal.resize(system.unknowns(), 0.0);

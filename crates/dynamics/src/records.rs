@@ -328,7 +328,7 @@ impl Records {
                 dt,
                 forces: step.forces,
                 least: TREMBLE * record.peak_force / report.closed.max(1) as f64,
-                passage: system.passages[contact],
+                passage: system.contacts[contact].passage,
             };
             let known = (&mut self.opened[..], &mut self.waiting[..], &self.loose[..]);
             let counted = step.count(points.clone(), known);

@@ -159,13 +159,13 @@ pub(crate) fn is_due(state: &State, step: u64, assembly: usize) -> bool {
 impl Between {
     /// None of contacts that have no other side to look from, and where deleted elements leave it.
     fn new(system: &System, number: usize) -> Option<Between> {
-        let touching = system.touching[number].iter();
+        let touching = system.contacts[number].bodies.iter();
         let mut bodies = touching.map(|&body| &system.bodies[body]);
         if bodies.any(Body::has_deletion) {
             return None;
         }
         let depth = DEPTH * system.depth_of_elements(number);
-        let faces = &system.secondary_faces[number];
+        let faces = &system.contacts[number].secondary_faces;
         let contact = system.contacts[number].reversed(faces, &system.x, depth)?;
         Some(Between {
             contact,
@@ -198,7 +198,7 @@ impl Watched {
         };
         still.resize(system.unknowns(), 0.0);
         watched.pair_initially(system, number, (0.0, still));
-        let own = shortest(system, &system.secondary_faces[number]);
+        let own = shortest(system, &system.contacts[number].secondary_faces);
         let other = match &contact.target {
             Target::Surface(faces) => shortest(system, faces),
             Target::Rigid(_) => vec![f64::INFINITY; system.x.len()],
@@ -211,12 +211,12 @@ impl Watched {
         // ends of bars have no length
         let element = match system.is_of_many(number) {
             true => {
-                let sizes = system.touching[number].iter();
+                let sizes = system.contacts[number].bodies.iter();
                 sizes.fold(f64::INFINITY, |least, &body| {
                     least.min(system.bodies[body].smallest_size())
                 })
             }
-            false => system.bodies[system.sides[number].0].smallest_size(),
+            false => system.bodies[system.contacts[number].secondary_body].smallest_size(),
         };
         watched.lengths = (0..contact.points.len())
             .map(|point| {
@@ -248,7 +248,7 @@ impl Watched {
         rows.clear();
         contact.pair(&places, &mut self.search, rows);
         let slides = matches!(contact.target, Target::Surface(_));
-        let first = system.first_point[number];
+        let first = system.contacts[number].range.start;
         for point in 0..rows.len() {
             let length = self.lengths[point];
             let force = state.interface.force[first + point];

@@ -228,7 +228,7 @@ impl Histogram {
 /// and step. Between bodies that cannot deform the velocity law is an impact without restitution.
 pub fn takes_energy(system: &System, contact: usize) -> bool {
     let is_stiff = |body: &Body| body.as_rigid().is_some() || body.as_discrete().is_some();
-    let mut bodies = system.touching[contact].iter();
+    let mut bodies = system.contacts[contact].bodies.iter();
     match &system.contacts[contact].law {
         Law::Displacement(_) => false,
         Law::Velocity(_) => bodies.all(|body| is_stiff(&system.bodies[*body])),

@@ -10,8 +10,8 @@ impl Assemblies {
     /// Those of a system.
     pub(crate) fn of(system: &System) -> Assemblies {
         let mut assemblies = joined(system);
-        for (number, bodies) in system.touching.iter().enumerate() {
-            if let Some(&body) = bodies.first() {
+        for (number, contact) in system.contacts.iter().enumerate() {
+            if let Some(&body) = contact.bodies.first() {
                 let assembly = assemblies.of_part[system.part_of_body[body]];
                 assemblies.all[assembly].contacts.push(number);
             }
@@ -48,7 +48,7 @@ impl Assemblies {
 
     /// The assembly of a contact.
     pub fn of_contact(&self, system: &System, contact: usize) -> usize {
-        self.of_part[system.part_of_body[system.sides[contact].0]]
+        self.of_part[system.part_of_body[system.contacts[contact].secondary_body]]
     }
 }
 
@@ -70,8 +70,8 @@ fn joined(system: &System) -> Assemblies {
             }
         }
     };
-    for bodies in &system.touching {
-        join(&mut bodies.iter().map(|&body| system.part_of_body[body]));
+    for contact in &system.contacts {
+        join(&mut contact.bodies.iter().map(|&body| system.part_of_body[body]));
     }
     for row in system.link_rows.iter() {
         join(
@@ -135,11 +135,11 @@ fn holds(system: &System, assembly: &Assembly) -> Vec<Hold> {
             }
         }
     }
-    for (number, contact) in system.contacts.iter().enumerate() {
+    for contact in &system.contacts {
         if let Target::Rigid(obstacle) = &contact.target
-            && system.touching[number].iter().any(&has)
+            && contact.bodies.iter().any(&has)
         {
-            of_obstacle(obstacle, system.friction[number] > 0.0, &mut holds);
+            of_obstacle(obstacle, contact.friction > 0.0, &mut holds);
         }
     }
     holds

@@ -11,7 +11,10 @@ use crate::contacts::renumbered;
 impl System {
     /// Whether cells at the primary side of a contact may be deleted.
     pub fn may_lay_bare(&self, contact: usize) -> bool {
-        match (&self.contacts[contact].target, self.sides[contact].1) {
+        match (
+            &self.contacts[contact].target,
+            self.contacts[contact].primary_body,
+        ) {
             (Target::Surface(_), Some(body)) => self.bodies[body].has_deletion(),
             _ => false,
         }
@@ -20,7 +23,7 @@ impl System {
     /// The faces of the primary side of a contact with these histories of all bodies: first those of the surface whose cells are left, in
     /// their order, then those of its body that deletion has laid bare. None of a side without deletion.
     pub fn faces_left(&self, contact: usize, histories: &[f64]) -> Option<Vec<Face>> {
-        let body = self.sides[contact].1?;
+        let body = self.contacts[contact].primary_body?;
         let Target::Surface(faces) = &self.contacts[contact].target else {
             return None;
         };

@@ -60,8 +60,8 @@ impl System {
         }
         // one matrix answers for contacts and links where multipliers act on all zones in contact alike
         let mut ratio: Option<f64> = None;
-        for (contact, bodies) in self.contacts.iter().zip(&self.touching) {
-            for &body in bodies {
+        for contact in &self.contacts {
+            for &body in &contact.bodies {
                 if !linked[self.part_of_body[body]] {
                     continue;
                 }
@@ -96,11 +96,12 @@ impl System {
             return Some("the weak form needs one scheme for all bodies; take node or mortar");
         }
         let slides_alike = ways().all(|x| Some(x) == ways().next());
-        if self.friction[number] > 0.0 && level != Level::Rate && !slides_alike {
+        if self.contacts[number].friction > 0.0 && level != Level::Rate && !slides_alike {
             return Some("friction needs a law in the rate here");
         }
-        let (secondary, primary) = self.sides[number];
-        let zones = [secondary, primary?].map(|body| self.zone_of_body[body]);
+        let contact = &self.contacts[number];
+        let zones =
+            [contact.secondary_body, contact.primary_body?].map(|body| self.zone_of_body[body]);
         let [one, other] = zones.map(|zone| &maps.all()[zone]);
         if one.contact_impulse != other.contact_impulse {
             return Some(

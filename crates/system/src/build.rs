@@ -10,9 +10,10 @@ use carom_contact::{Contact, Frames, Places};
 use carom_schemes::Scheme;
 
 use crate::assemblies::Assemblies;
-use crate::contacts::{is_of_many, numbered, owners, renumbered, sides, touching};
+use crate::contact_pair::{ContactPair, Made};
+use crate::contacts::{numbered, owners};
 use crate::error::Error;
-use crate::extents::{NodeMasses, diagonals, passages};
+use crate::extents::{NodeMasses, diagonals};
 use crate::initial::{settle, slack};
 use crate::levers::Levers;
 use crate::link_row::LinkRow;
@@ -21,13 +22,12 @@ use crate::massless::redistribute;
 use crate::middles::{Carried, add_middles};
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
-use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::numbering::{Numbering, numbering};
 use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
 use crate::system::{System, part_of};
-use crate::tolerances::{tolerance, tolerances};
+use crate::tolerances::tolerance;
 use crate::turning::TurningRows;
 
 impl System {
@@ -193,22 +193,6 @@ impl System {
             },
         };
         settle(&mut contacts, ways, &places, (&mesh_node, slack(&model)))?;
-        let mut first_point = vec![0];
-        for contact in &contacts {
-            first_point.push(first_point[first_point.len() - 1] + contact.points.len());
-        }
-        let sides = model
-            .contacts
-            .iter()
-            .map(|contact| sides(contact, &model))
-            .collect();
-        let owners = owners(&model);
-        let touching = touching(&model, &owners);
-        let faces_of = |contact: &ModelContact| {
-            let faces = contact.secondary.faces.iter();
-            faces.map(|face| renumbered(face, &number)).collect()
-        };
-        let secondary_faces: Vec<Vec<_>> = model.contacts.iter().map(faces_of).collect();
         let about = nearest_corner(&x);
         let origin = match model.contacts.is_empty() {
             true => about,
@@ -226,10 +210,6 @@ impl System {
             part_of(&parts, first.unwrap_or(0))
         });
         let part_of_body: Vec<usize> = part_of_body.collect();
-        let contacts_of_all = model.contacts.iter();
-        let of_many = contacts_of_all
-            .map(|contact| is_of_many(contact, &owners, &part_of_body))
-            .collect();
         let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
         let Links {
             named: links,
@@ -253,14 +233,18 @@ impl System {
             .bodies
             .iter()
             .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
-        let numbered = contacts.iter().zip(&secondary_faces);
         let levers = Levers::new(&unknowns, parts.iter().zip(&undeformed));
-        let moments = model.contacts.iter().zip(numbered);
-        let moments = moments.map(|(model, (contact, faces)): (_, (_, &Vec<_>))| {
-            let of = (&unknowns, dim, axisymmetric);
-            MomentAbout::of(model, (contact, &faces[..]), of, &levers)
-        });
-        let moments = moments.collect::<Result<_, _>>()?;
+        let made = Made {
+            model: &model,
+            owners: &owners(&model),
+            bodies: &bodies,
+            part_of_body: &part_of_body,
+            number: &number,
+            axisymmetric,
+            unknowns: &unknowns,
+            levers: &levers,
+        };
+        let contacts = ContactPair::all(contacts, &made)?;
         let mut system = System {
             assemblies: Assemblies::default(),
             supports,
@@ -270,8 +254,6 @@ impl System {
             origin,
             about,
             tolerance: tolerance(model.length(), model.mesh.rounding()),
-            tolerances: tolerances(&model, &touching),
-            passages: passages(&model, (&owners, &bodies, &touching)),
             axisymmetric,
             dim,
             mesh_node,
@@ -282,7 +264,7 @@ impl System {
             has_bolts: bodies.iter().any(|body| !body.bolts().is_empty()),
             has_dashpots: bodies.iter().any(Body::has_damping),
             nodes_of_whole: x.len(),
-            sharp: crate::sharp::points(&contacts, &secondary_faces, &x),
+            sharp: crate::sharp::points(&contacts, &x),
             diagonals: diagonals((&bodies, &body_masses), &x),
             bodies,
             body_masses,
@@ -293,11 +275,6 @@ impl System {
             fixed,
             load,
             contacts,
-            secondary_faces,
-            sides,
-            touching,
-            of_many,
-            first_point,
             scheme: schemes[0],
             schemes,
             zone_of_body,
@@ -310,9 +287,6 @@ impl System {
             adaptive: model.adaptive,
             critical_fraction: model.critical_fraction,
             nonlinear,
-            friction: model.contacts.iter().map(|c| c.friction).collect(),
-            merge_within: model.contacts.iter().map(|c| c.merge_within).collect(),
-            moments,
             x,
             initial_frames,
             initial_displacement,

@@ -5,6 +5,7 @@ use carom_bodies::MassKind;
 use carom_contact::law::Level;
 use carom_contact::{Contact, Initial, Integration};
 
+use crate::contact_pair::ContactPair;
 use crate::error::Error;
 use crate::modal::NumberedModal;
 use crate::model::{ModelBody, ModelContact};
@@ -100,12 +101,9 @@ impl System {
             let body = body.spec.name.clone();
             return Err(carom_bodies::Error::NoBetween { body }.into());
         }
-        let contacts = self.contacts.iter().zip(&self.touching);
-        let touches = |bodies: &[usize]| bodies.iter().any(|&body| of_zone(body));
-        let mut contacts = contacts
-            .filter(|(_, bodies)| touches(bodies))
-            .map(|(c, _)| c);
-        let refused = |contact: &&Contact| !scheme.takes(contact.law.get().level());
+        let touches = |pair: &&ContactPair| pair.bodies.iter().any(|&body| of_zone(body));
+        let mut contacts = self.contacts.iter().filter(touches);
+        let refused = |contact: &&ContactPair| !scheme.takes(contact.law.get().level());
         if let Some(contact) = contacts.clone().find(refused) {
             let of_rates = scheme.takes(Level::Rate) && !scheme.is_explicit();
             return Err(match contact.law.get().level() {
@@ -122,7 +120,7 @@ impl System {
                 },
             });
         }
-        let projects = |contact: &&Contact| contact.law.projects();
+        let projects = |contact: &&ContactPair| contact.law.projects();
         if let Some(contact) = contacts.find(projects)
             && !scheme.step_map(self.dt).balances_at_the_end()
         {
@@ -150,9 +148,9 @@ impl System {
         let refuse = |what: Refused, why| Err(Error::Nonlinear { what, why });
         self.check_rotations()?;
         let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
-        for (contact, friction) in self.contacts.iter().zip(&self.friction) {
+        for contact in &self.contacts {
             let refused = || Refused::Integration(contact.name.clone());
-            if weak(contact) && *friction > 0.0 {
+            if weak(contact) && contact.friction > 0.0 {
                 return refuse(
                     refused(),
                     "the weak form with signs at Gauss points has no friction; take node or mortar",

@@ -7,6 +7,7 @@ use carom_contact::law::Level;
 use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
 use carom_mesh::{ElementId, Face, Mesh, Rim, Surface};
 
+use crate::contact_pair::ContactPair;
 use crate::error::Error;
 use crate::model::{Model, ModelContact, ModelTarget};
 use crate::system::System;
@@ -16,12 +17,12 @@ const WHICH_LAWS: &str = "at Gauss points hold, in their weak form, the displace
 impl System {
     /// Whether a side of a contact has several bodies that move apart: what two bodies do to each other is then not told apart.
     pub fn is_of_many(&self, contact: usize) -> bool {
-        self.of_many[contact]
+        self.contacts[contact].is_of_many
     }
 
     /// Tangents of a contact point in problems with friction: none where no contact has any.
     pub fn tangents(&self) -> usize {
-        match self.friction.iter().any(|mu| *mu > 0.0) {
+        match self.contacts.iter().any(|contact| contact.friction > 0.0) {
             true => self.dim.saturating_sub(1),
             false => 0,
         }
@@ -32,13 +33,13 @@ impl System {
     /// contact: its force belongs to the instant of the internal forces, and with the normal of another instant a mass in orbit in a
     /// bore would gain or lose angular momentum in each step, in proportion to the step.
     pub fn pairs_anew(&self, contact: usize) -> bool {
-        let mut bodies = self.touching[contact].iter();
+        let mut bodies = self.contacts[contact].bodies.iter();
         let finite = bodies.any(|&body| self.bodies[body].has_finite_motion());
-        let contact = (&self.contacts[contact], self.friction[contact]);
-        let mortar = matches!(contact.0.integration, Integration::Mortar { .. });
-        let compliant = contact.0.law.get().level() == Level::GapAndRate;
-        let round = matches!(contact.0.target, Target::Rigid(_)) && contact.0.turns();
-        finite || mortar || contact.0.moves() || contact.1 > 0.0 || compliant && round
+        let contact = &self.contacts[contact];
+        let mortar = matches!(contact.integration, Integration::Mortar { .. });
+        let compliant = contact.law.get().level() == Level::GapAndRate;
+        let round = matches!(contact.target, Target::Rigid(_)) && contact.turns();
+        finite || mortar || contact.moves() || contact.friction > 0.0 || compliant && round
     }
 
     /// Refuses laws that cannot hold where they are asked to.
@@ -54,11 +55,12 @@ impl System {
             | Integration::Node
             | Integration::Mortar { .. } => None,
         };
-        let mut contacts = self.contacts.iter().zip(&self.secondary_faces);
-        let cause = |(contact, faces): (&Contact, &[Face])| {
-            cause(contact).or_else(|| unfit_around_axes(contact, faces, self.dim))
+        let cause = |pair: &ContactPair| {
+            let around = || unfit_around_axes(pair, &pair.secondary_faces, self.dim);
+            cause(pair).or_else(around)
         };
-        match contacts.find_map(|pair| Some((pair.0, cause((pair.0, &pair.1[..]))?))) {
+        let mut contacts = self.contacts.iter();
+        match contacts.find_map(|pair| Some((pair, cause(pair)?))) {
             None => Ok(()),
             Some((contact, cause)) => Err(Error::Integration {
                 contact: contact.name.clone(),
@@ -165,16 +167,17 @@ pub(crate) fn bodies_of(
     [bodies(&contact.secondary), primary]
 }
 
-/// All bodies of each contact, ascending: those of its [`sides`], and others where a side has several.
-pub(crate) fn touching(model: &Model, owners: &BTreeMap<ElementId, usize>) -> Vec<Vec<usize>> {
-    let of = |contact: &ModelContact| {
-        let (secondary, primary) = sides(contact, model);
-        let first = [Some(secondary), primary].into_iter().flatten();
-        let all = bodies_of(contact, owners).into_iter().flatten();
-        let bodies: BTreeSet<usize> = first.chain(all).collect();
-        bodies.into_iter().collect()
-    };
-    model.contacts.iter().map(of).collect()
+/// All bodies of a contact, ascending: those of its [`sides`], and others where a side has several.
+pub(crate) fn touching(
+    contact: &ModelContact,
+    model: &Model,
+    owners: &BTreeMap<ElementId, usize>,
+) -> Vec<usize> {
+    let (secondary, primary) = sides(contact, model);
+    let first = [Some(secondary), primary].into_iter().flatten();
+    let all = bodies_of(contact, owners).into_iter().flatten();
+    let bodies: BTreeSet<usize> = first.chain(all).collect();
+    bodies.into_iter().collect()
 }
 
 /// Whether a side of a contact has several bodies that move apart: bodies that share nodes are one ([`System::part_of_body`]),

@@ -1,11 +1,10 @@
 //! How large bodies are.
 
-use std::collections::BTreeMap;
-
 use carom_bodies::{Body, smallest_size};
 use carom_mesh::{Bounds, ElementId, Surface};
 
-use crate::model::{Model, ModelTarget};
+use crate::contact_pair::Made;
+use crate::model::{ModelContact, ModelTarget};
 
 /// Lumped masses of the nodes of a body: system number, kg.
 pub(crate) type NodeMasses = Vec<(u32, f64)>;
@@ -52,34 +51,27 @@ pub(crate) fn diagonals((bodies, masses): (&[Body], &[NodeMasses]), x: &[[f64; 3
     bodies.iter().zip(masses).map(of).collect()
 }
 
-/// Time that a wave needs to pass over the smallest element at a side of each contact, of its slower side, s: elements elsewhere in its bodies say nothing of what closes there.
-/// Where a side has no faces, it is that of the bodies. `owners`: the body of each cell.
-pub(crate) fn passages(
-    model: &Model,
-    (owners, bodies, touching): (&BTreeMap<ElementId, usize>, &[Body], &[Vec<usize>]),
-) -> Vec<f64> {
+/// Time that a wave needs to pass over the smallest element at a side of a contact, of its slower side, s: elements elsewhere in its bodies say nothing of what closes there.
+/// Where a side has no faces, it is that of the bodies that are `touching`.
+pub(crate) fn passage(contact: &ModelContact, of: &Made, touching: &[usize]) -> f64 {
     let of_side = |side: &Surface| {
         let of_face = |parent: ElementId| {
-            let speed = bodies[*owners.get(&parent)?].wave_speed()?;
-            Some(smallest_size(&model.mesh, parent) / speed)
+            let speed = of.bodies[*of.owners.get(&parent)?].wave_speed()?;
+            Some(smallest_size(&of.model.mesh, parent) / speed)
         };
         let faces = side.faces.iter().filter_map(|face| of_face(face.parent));
         faces.reduce(f64::min)
     };
-    let contacts = model.contacts.iter().zip(touching);
-    let passages = contacts.map(|(contact, touching)| {
-        let primary = match &contact.primary {
-            ModelTarget::Surface(primary) => of_side(primary),
-            ModelTarget::Rigid(_) => None,
-        };
-        let sides = [of_side(&contact.secondary), primary];
-        let of_sides = sides.into_iter().flatten().reduce(f64::max);
-        of_sides.unwrap_or_else(|| {
-            let own = touching.iter().map(|&body| bodies[body].passage());
-            own.fold(0.0, f64::max)
-        })
-    });
-    passages.collect()
+    let primary = match &contact.primary {
+        ModelTarget::Surface(primary) => of_side(primary),
+        ModelTarget::Rigid(_) => None,
+    };
+    let sides = [of_side(&contact.secondary), primary];
+    let of_sides = sides.into_iter().flatten().reduce(f64::max);
+    of_sides.unwrap_or_else(|| {
+        let own = touching.iter().map(|&body| of.bodies[body].passage());
+        own.fold(0.0, f64::max)
+    })
 }
 
 /// The first node of the piece of a node.

@@ -94,7 +94,7 @@ impl System {
         let Target::Surface(target) = &self.contacts[contact].target else {
             return Vec::new();
         };
-        let own = &self.secondary_faces[contact];
+        let own = &self.contacts[contact].secondary_faces;
         if !Sight::is_needed(own, target) {
             return Vec::new();
         }

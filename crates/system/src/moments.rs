@@ -1,9 +1,9 @@
 //! Contacts whose moment is asked for: the point that it is about, and what belongs to the secondary side.
 
-use carom_algebra::unknowns::Unknowns;
 use carom_contact::{Contact, Target};
 use carom_mesh::Face;
 
+use crate::contact_pair::Made;
 use crate::error::Error;
 use crate::levers::Levers;
 use crate::model::ModelContact;
@@ -25,8 +25,7 @@ impl MomentAbout {
     pub(crate) fn of(
         model: &ModelContact,
         (contact, faces): (&Contact, &[Face]),
-        (unknowns, dim, axisymmetric): (&Unknowns, usize, bool),
-        levers: &Levers,
+        of: &Made,
     ) -> Result<Option<MomentAbout>, Error> {
         let Some(point) = model.moment_about else {
             return Ok(None);
@@ -37,7 +36,8 @@ impl MomentAbout {
                 cause,
             })
         };
-        if dim < 2 || axisymmetric {
+        let unknowns = of.unknowns;
+        if of.model.mesh.dim < 2 || of.axisymmetric {
             return refuse("forces along a line and axisymmetric ones have no moment");
         }
         let mut secondary = vec![false; unknowns.len()];
@@ -58,7 +58,7 @@ impl MomentAbout {
         if opposite.any(shared) {
             return refuse("its two sides share nodes, whose forces belong to both");
         }
-        let levers = levers.among(unknowns, |unknown| secondary[unknown]);
+        let levers = of.levers.among(unknowns, |unknown| secondary[unknown]);
         Ok(Some(MomentAbout { point, levers }))
     }
 }

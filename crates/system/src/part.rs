@@ -11,6 +11,7 @@ use carom_bodies::{Body, Solid, by_kind};
 use carom_mesh::ElementId;
 
 use crate::build::Nodes;
+use crate::contact_pair::ContactPair;
 use crate::error::Error;
 use crate::levers::{Lever, Levers};
 use crate::mass::Mass;
@@ -212,7 +213,6 @@ impl System {
             own.filter_map(|&(node, mass)| Some((to.find(node)?, mass)))
                 .collect()
         };
-        let faces = self.secondary_faces.iter();
         let nodes = || kept.nodes.iter().map(|node| *node as usize);
         System {
             mesh: Arc::clone(&self.mesh),
@@ -253,19 +253,10 @@ impl System {
             contacts: self
                 .contacts
                 .iter()
-                .map(|contact| contact.renumbered(number))
-                .collect(),
-            secondary_faces: faces
-                .map(|faces| faces.iter().map(|face| face.renumbered(number)).collect())
+                .map(|contact| of_contact(contact, &to))
                 .collect(),
             sharp: self.sharp.clone(),
-            sides: self.sides.clone(),
-            touching: self.touching.clone(),
-            of_many: self.of_many.clone(),
-            first_point: self.first_point.clone(),
             tolerance: self.tolerance,
-            tolerances: self.tolerances.clone(),
-            passages: self.passages.clone(),
             scheme: self.scheme,
             schemes: self.schemes.clone(),
             zone_of_body: self.zone_of_body.clone(),
@@ -281,25 +272,27 @@ impl System {
             dt: self.dt,
             adaptive: self.adaptive,
             critical_fraction: self.critical_fraction,
-            friction: self.friction.clone(),
-            merge_within: self.merge_within.clone(),
-            moments: self
-                .moments
-                .iter()
-                .map(|of| {
-                    let MomentAbout { point, levers } = of.as_ref()?;
-                    Some(MomentAbout {
-                        point: *point,
-                        levers: to.levers(levers),
-                    })
-                })
-                .collect(),
             initial_frames: Vec::new(),
             initial_displacement: to.pick(&self.initial_displacement),
             initial_velocity: to.pick(&self.initial_velocity),
             staged: None,
             unknowns,
         }
+    }
+}
+
+fn of_contact(pair: &ContactPair, to: &Renumbering) -> ContactPair {
+    let number = |node: u32| to.of(node);
+    let faces = pair.secondary_faces.iter();
+    let moment = pair.moment.as_ref();
+    ContactPair {
+        contact: pair.contact.renumbered(number),
+        secondary_faces: faces.map(|face| face.renumbered(number)).collect(),
+        moment: moment.map(|moment| MomentAbout {
+            point: moment.point,
+            levers: to.levers(&moment.levers),
+        }),
+        ..pair.clone()
     }
 }
 

@@ -6,8 +6,9 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use carom_algebra::unknowns::{Carrier, Kind, NodeKind, Unknowns};
 use carom_bodies::{Body, DiscreteKind, Kinematics, Rotations};
-use carom_contact::{Contact, Frames, Places, Sliding};
+use carom_contact::{Frames, Places, Sliding};
 
+use crate::contact_pair::ContactPair;
 use crate::error::Error;
 use crate::middles::Carried;
 use crate::model::{Model, ModelBody, ModelDiscrete};
@@ -356,7 +357,7 @@ impl System {
         let staged = scheme.projects_predictor()
             || scheme.restores_contact_work()
             || scheme.step_map(self.dt).uses_contact_acceleration();
-        let projects = |contact: &Contact| contact.law.projects();
+        let projects = |contact: &ContactPair| contact.law.projects();
         // rows of several schemes are those of the end of the step; moments must balance about the same axes
         let ends = |zone: usize| {
             let map = self.schemes[zone].get().step_map(self.dt);
@@ -396,7 +397,7 @@ impl System {
         let Some(body) = self.bodies.iter().find_map(Body::as_rigid) else {
             return Ok(());
         };
-        let why = |contact: &Contact| {
+        let why = |contact: &ContactPair| {
             let carried = |node: u32| self.unknowns.carrier(node).is_some();
             let mut own = contact.points.iter().flat_map(|point| point.carriers());
             let faces = match &contact.target {

@@ -1,8 +1,9 @@
 //! Nodes of contacts at the sharp edges and corners of their surface.
 
-use carom_contact::{Contact, Integration};
+use carom_contact::Integration;
 use carom_mesh::Face;
 
+use crate::contact_pair::ContactPair;
 use crate::system::System;
 
 /// Cosine of the angle between the normals of two faces from which on their common edge is sharp: 45°. Faces of a round surface that
@@ -11,17 +12,17 @@ const SHARP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// Whether each contact point is at a sharp edge or corner of its surface, by the number of the point: a body that touches there touches in
 /// a point or a line whatever the elements. Only of points that are nodes; the rim of a surface is none, where the body may go on smoothly.
-pub(crate) fn points(contacts: &[Contact], faces: &[Vec<Face>], x: &[[f64; 3]]) -> Vec<bool> {
-    let of_contact = |(contact, faces): (&Contact, &Vec<Face>)| -> Vec<bool> {
+pub(crate) fn points(contacts: &[ContactPair], x: &[[f64; 3]]) -> Vec<bool> {
+    let of_contact = |contact: &ContactPair| -> Vec<bool> {
         if contact.integration != Integration::Node {
             return vec![false; contact.points.len()];
         }
-        let nodes = sharp_nodes(faces, x);
+        let nodes = sharp_nodes(&contact.secondary_faces, x);
         let points = contact.points.iter();
         let is_sharp = points.map(|point| nodes.binary_search(&point.node()).is_ok());
         is_sharp.collect()
     };
-    contacts.iter().zip(faces).flat_map(of_contact).collect()
+    contacts.iter().flat_map(of_contact).collect()
 }
 
 /// Ascending.

@@ -6,6 +6,7 @@ use carom_bodies::{FrequencyBound, Placement};
 use carom_contact::law::{Local, Status};
 use carom_contact::{Contact, Rows, Search};
 
+use crate::contact_pair::ContactPair;
 use crate::modal::NumberedModal;
 use crate::motion::Motion;
 use crate::system::System;
@@ -73,10 +74,10 @@ impl System {
     pub fn critical_with(&self, bodies: f64) -> f64 {
         let (springs, dashpots) = self.discrete_bounds();
         let explicit = |body: usize| self.is_explicit(self.zone_of_body[body]);
-        let touching = self.contacts.iter().zip(&self.touching);
-        let touching = touching.filter(|(_, bodies)| bodies.iter().any(|&body| explicit(body)));
+        let touches = |pair: &&ContactPair| pair.bodies.iter().any(|&body| explicit(body));
+        let touching = self.contacts.iter().filter(touches);
         let contacts = touching
-            .map(|(contact, _)| self.contact_bound(contact))
+            .map(|contact| self.contact_bound(contact))
             .sum::<f64>();
         let squared = bodies * bodies + contacts + springs;
         let damping = self.nonlinear.damping.iter().enumerate();

@@ -7,16 +7,16 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, height};
 use carom_contact::{Contact, Target};
-use carom_mesh::{Face, Mesh};
+use carom_mesh::Mesh;
 use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
 use crate::assemblies::Assemblies;
+use crate::contact_pair::ContactPair;
 use crate::levers::Levers;
 use crate::link_row::LinkRow;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
-use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::reported::ReportedSupport;
 use crate::turning::TurningRows;
@@ -84,26 +84,12 @@ pub struct System {
     /// Dead load, N.
     pub load: Vec<f64>,
     /// Contacts.
-    pub contacts: Vec<Contact>,
-    /// Faces of the secondary surface of each contact, their nodes by system number.
-    pub secondary_faces: Vec<Vec<Face>>,
+    pub contacts: Vec<ContactPair>,
     /// Whether each contact point is at a sharp edge or corner of its surface.
     pub sharp: Vec<bool>,
-    /// Bodies of each contact: the secondary's, and the primary's unless it is rigid.
-    /// Where a side has several, the first of them.
-    pub sides: Vec<(usize, Option<usize>)>,
-    /// All bodies of each contact, ascending.
-    pub touching: Vec<Vec<usize>>,
-    pub(crate) of_many: Vec<bool>,
-    /// First contact point of each contact in the arrays over all points, and one end more.
-    pub first_point: Vec<usize>,
     /// Length of the model that counts as none, m: 1e-12 of its length ([`Model::length`](crate::Model::length)), or the
     /// rounding of its coordinates ([`Mesh::rounding`](carom_mesh::Mesh::rounding)) where that is larger.
     pub tolerance: f64,
-    /// Gap below which a point of each contact counts as closed, m: the same of the bodies that it may touch, since how large others are says nothing of a gap.
-    pub tolerances: Vec<f64>,
-    /// Time that a wave needs to pass over the smallest element at a side of each contact, of its slower side, s.
-    pub passages: Vec<f64>,
     /// Time scheme; of several the first one.
     pub scheme: Scheme,
     /// The time schemes, each once.
@@ -129,12 +115,6 @@ pub struct System {
     pub critical_fraction: Option<f64>,
     /// Loads and motions in time, damping, the static stage, and the rules of the iterations.
     pub nonlinear: NumberedNonlinear,
-    /// Coefficient of friction by contact.
-    pub friction: Vec<f64>,
-    /// By contact: duration of a flight that ends an impact, s; `None` where waves and steps tell.
-    pub merge_within: Vec<Option<f64>>,
-    /// By contact: what its moment is about; `None` where none is reported.
-    pub moments: Vec<Option<MomentAbout>>,
     /// Initial rotations of the nodes that have any.
     pub initial_frames: Vec<Rotation>,
     /// Initial displacement, m.
@@ -153,7 +133,8 @@ impl System {
             Target::Surface(faces) => &faces[..],
             Target::Rigid(_) => &[],
         };
-        let faces = self.secondary_faces[contact]
+        let faces = self.contacts[contact]
+            .secondary_faces
             .iter()
             .map(|face| (face, false));
         let faces = faces.chain(primary.iter().map(|face| (face, true)));
@@ -178,7 +159,7 @@ impl System {
 
     /// The number of the scheme of the secondary side of a contact.
     pub fn zone_of(&self, contact: usize) -> usize {
-        self.zone_of_body[self.sides[contact].0]
+        self.zone_of_body[self.contacts[contact].secondary_body]
     }
 
     /// The number of the scheme of an unknown.
@@ -204,28 +185,32 @@ impl System {
 
     /// Number of contact points over all contacts.
     pub fn points(&self) -> usize {
-        self.first_point[self.contacts.len()]
+        self.contacts[self.contacts.len()].range.start
     }
 
     /// Contact points of a contact in the arrays over all points.
     pub fn points_of(&self, contact: usize) -> Range<usize> {
-        self.first_point[contact]..self.first_point[contact + 1]
+        self.contacts[contact].range.clone()
     }
 
     /// Index of the contact of a contact point.
     pub fn contact_of(&self, point: usize) -> usize {
-        self.first_point.partition_point(|&first| first <= point) - 1
+        self.contacts
+            .partition_point(|contact| contact.range.end <= point)
     }
 
     /// Gap below which a point counts as closed, m.
     pub fn tolerance_at(&self, point: usize) -> f64 {
-        self.tolerances[self.contact_of(point)]
+        self.contacts[self.contact_of(point)].tolerance
     }
 
     /// The contact and the place in it of a contact point.
     pub fn point(&self, point: usize) -> (&Contact, usize) {
         let contact = self.contact_of(point);
-        (&self.contacts[contact], point - self.first_point[contact])
+        (
+            &self.contacts[contact],
+            point - self.contacts[contact].range.start,
+        )
     }
 
     /// Mean velocity of a body, Σ m v / Σ m over its nodes, m/s.

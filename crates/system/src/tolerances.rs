@@ -12,23 +12,35 @@ pub(crate) fn tolerance(length: f64, rounding: f64) -> f64 {
     (PART * length).max(rounding)
 }
 
-/// The same of each contact: of the bodies that it may touch, by number. Where these have no extent, as a point mass before an obstacle, it is that of the model.
-pub(crate) fn tolerances(model: &Model, touching: &[Vec<usize>]) -> Vec<f64> {
-    let whole = tolerance(model.length(), model.mesh.rounding());
-    let boxes: Vec<Bounds> = (0..model.bodies.len() + model.discrete.len())
-        .map(|body| bounds(model, cells(model, body)))
-        .collect();
-    let of = |bodies: &Vec<usize>| {
-        let around = bodies.iter().map(|&body| boxes[body]);
+/// The same of contacts.
+pub(crate) struct Tolerances {
+    whole: f64,
+    /// Around each body.
+    boxes: Vec<Bounds>,
+}
+
+impl Tolerances {
+    pub(crate) fn new(model: &Model) -> Tolerances {
+        let bodies = 0..model.bodies.len() + model.discrete.len();
+        Tolerances {
+            whole: tolerance(model.length(), model.mesh.rounding()),
+            boxes: bodies
+                .map(|body| bounds(model, cells(model, body)))
+                .collect(),
+        }
+    }
+
+    /// That of a contact which may touch these bodies. Where they have no extent, as a point mass before an obstacle, it is that of the model.
+    pub(crate) fn of(&self, bodies: &[usize]) -> f64 {
+        let around = bodies.iter().map(|&body| self.boxes[body]);
         let around = around.reduce(|one, other| one.union(&other));
         match around.map(|around| (around.diagonal(), around.reach())) {
             Some((length, reach)) if length > 0.0 && length.is_finite() => {
                 tolerance(length, 2.0 * f64::EPSILON * reach)
             }
-            _ => whole,
+            _ => self.whole,
         }
-    };
-    touching.iter().map(of).collect()
+    }
 }
 
 /// The box around some cells.

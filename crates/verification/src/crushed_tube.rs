@@ -102,7 +102,7 @@ fn depth(newton: &Driver) -> f64 {
         let k = node as usize;
         [0, 1].map(|i| system.x[k][i] + u[2 * k + i])
     };
-    let faces = &system.secondary_faces[1];
+    let faces = &system.contacts[1].secondary_faces;
     let mut nodes: Vec<u32> = faces
         .iter()
         .flat_map(|face| face.corners().to_vec())
@@ -127,7 +127,7 @@ fn depth(newton: &Driver) -> f64 {
 
 /// Largest way towards the surface, m, of the points inside that have closed in the last step; `before`: their gaps then.
 fn way_in(newton: &Driver, before: &[f64]) -> f64 {
-    let inside = newton.system().first_point[1]..;
+    let inside = newton.system().contacts[1].range.start..;
     let pairs = before.iter().zip(&newton.state().interface.gap[inside]);
     let entered = pairs.filter(|(before, now)| before.is_finite() && **before > 0.0 && **now < 0.0);
     entered.fold(0.0, |most, (before, now)| most.max(before - now))
@@ -145,7 +145,7 @@ pub(crate) const CHECK: Check = Check {
         let (mut met, mut difference, mut closed) = (0, 0.0_f64, 0);
         let (mut deepest, mut way) = (0.0_f64, 0.0_f64);
         for step in 1..=steps {
-            let inside = tube.system().first_point[1]..;
+            let inside = tube.system().contacts[1].range.start..;
             let before = tube.state().interface.gap[inside].to_vec();
             tube.step()?;
             way = way.max(way_in(&tube, &before));

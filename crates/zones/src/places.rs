@@ -44,8 +44,8 @@ impl Places {
         own.retain(|(_, to)| !std::mem::replace(&mut taken[*to as usize], true));
         let mut points = Vec::new();
         for (k, contact) in contacts.iter().enumerate() {
-            let from = zone.first_point[k]..zone.first_point[k + 1];
-            let to = whole.first_point[*contact]..whole.first_point[*contact + 1];
+            let from = zone.points_of(k);
+            let to = whole.points_of(*contact);
             points.extend(from.zip(to).map(|(from, to)| (from as u32, to as u32)));
         }
         let histories = [zone, whole].map(|system| &system.nonlinear.histories);

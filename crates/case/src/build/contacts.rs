@@ -150,12 +150,13 @@ impl Builder<'_> {
     /// a thin body on its far side faces it no more.
     fn warn_of_speed(&mut self, system: &System) {
         let (fastest, accelerations) = (fastest(system), accelerations(system));
-        for (k, &(secondary, _)) in system.sides.iter().enumerate() {
+        for (k, contact) in system.contacts.iter().enumerate() {
+            let secondary = contact.secondary_body;
             let zone = self.plan.zone_of(secondary);
             let parts = zone.map_or(1, |zone| self.plan.zones[zone].substeps);
             let dt = system.dt / f64::from(parts);
             let smallest = system.bodies[secondary].smallest_size();
-            let middles = system.contacts[k].distance_of_middles();
+            let middles = contact.distance_of_middles();
             let thick = middles.unwrap_or(f64::INFINITY);
             let (element, what) = match thick < smallest {
                 true => (thick, "distance of the middles that touch"),
@@ -307,9 +308,9 @@ impl Builder<'_> {
             self.warn_of_springs(system);
         }
         self.warn_of_speed(system);
-        for (contact, (secondary, _)) in system.contacts.iter().zip(&system.sides) {
+        for contact in &system.contacts {
             let name = &contact.name;
-            let zone = self.plan.zone_of(*secondary);
+            let zone = self.plan.zone_of(contact.secondary_body);
             let scheme = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
             if let Law::Velocity(Velocity {
                 reading: Reading::AsPrinted,

@@ -130,7 +130,7 @@ fn solve(
             system.contacts.len()
         ));
     };
-    let (secondary, primary) = system.sides[0];
+    let (secondary, primary) = (contact.secondary_body, contact.primary_body);
     match (two, primary) {
         (true, None) => return Err("its contact is with a rigid obstacle".to_string()),
         (false, Some(_)) => return Err("its contact is between two bodies".to_string()),

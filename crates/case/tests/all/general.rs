@@ -342,7 +342,7 @@ fn nodes_that_others_carry_look_for_what_is_near_and_meet_the_same() {
             result_of(&text, "histories.csv", |built| {
                 let system = Arc::get_mut(&mut built.system).unwrap();
                 assert!(system.contacts[0].near_only);
-                system.contacts[0].near_only = near_only;
+                system.contacts[0].contact.near_only = near_only;
             })
         };
         let [(_, near), (_, all)] = [true, false].map(looking);

@@ -59,10 +59,10 @@ pub(super) struct Reach {
 
 impl Pairing {
     /// Makes these the points of contacts that face nothing.
-    pub fn open_all(&mut self, contacts: &[Contact], dim: usize) {
+    pub fn open_all<'a>(&mut self, contacts: impl IntoIterator<Item = &'a Contact>, dim: usize) {
         self.clear();
         self.dim = dim;
-        let points = contacts.iter().flat_map(|contact| &contact.points);
+        let points = contacts.into_iter().flat_map(|contact| &contact.points);
         self.areas.extend(points.map(|point| point.area));
         self.spans.resize(self.areas.len(), [0; 2]);
         self.rows.open_all(self.areas.len());

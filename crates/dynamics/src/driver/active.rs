@@ -35,7 +35,7 @@ pub(super) struct Active {
 
 impl Active {
     pub(super) fn of(system: &System) -> Active {
-        let contacts = system.contacts.iter().zip(&system.secondary_faces);
+        let contacts = system.contacts.iter();
         Active {
             all: true,
             own: None,
@@ -43,7 +43,7 @@ impl Active {
             points: Vec::new(),
             before: Vec::new(),
             reaches: contacts
-                .map(|(contact, faces)| REACH * contact.mean_diagonal(faces, &system.x))
+                .map(|pair| REACH * pair.mean_diagonal(&pair.secondary_faces, &system.x))
                 .collect(),
             looks_to: Vec::new(),
             offered: false,

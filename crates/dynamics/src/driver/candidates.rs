@@ -171,7 +171,7 @@ impl Driver {
         self.candidates.retain(|&point| {
             let number = system.contact_of(point as usize);
             let contact = as_narrowed(&self.narrowed, &system, number);
-            let first = system.first_point[number];
+            let first = system.contacts[number].range.start;
             let takes_part = |other: usize| chosen[first + other];
             !contact.leaves_it((pairing, first), point as usize - first, takes_part)
         });

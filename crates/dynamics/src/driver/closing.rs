@@ -75,14 +75,18 @@ impl Driver {
         }
         let before = &self.state.interface;
         let free = |point: usize| before.force[point] == 0.0 && before.landed[point] == 0.0;
-        let closed = |point: usize| self.pairing.rows.gap(point) <= self.system.tolerances[number];
+        let closed =
+            |point: usize| self.pairing.rows.gap(point) <= self.system.contacts[number].tolerance;
         self.system.points_of(number).all(free) && self.system.points_of(number).any(closed)
     }
 
     /// When the first point of a contact that flies closes, over the time by which its points move; none where it was closed all the
     /// time.
     fn closing(&mut self, number: usize) -> Option<f64> {
-        let (tolerance, moves) = (self.system.tolerances[number], self.map_of(number).moves);
+        let (tolerance, moves) = (
+            self.system.contacts[number].tolerance,
+            self.map_of(number).moves,
+        );
         let mut closed = self.captured(number);
         let mut open = closed - BEFORE;
         if self.look_at(number, open).gap <= tolerance {
@@ -157,7 +161,8 @@ impl Driver {
                     pressed.fold(0.0, |most, point| f64::max(most, -interface.gap[point]))
                 }
                 None => {
-                    let touches = |point| interface.gap[point] <= self.system.tolerances[number];
+                    let touches =
+                        |point| interface.gap[point] <= self.system.contacts[number].tolerance;
                     match points.clone().any(touches) {
                         true => continue,
                         false => 0.0,

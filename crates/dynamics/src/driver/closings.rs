@@ -38,6 +38,6 @@ impl Closings {
 
 /// Whether all bodies of a contact are rigid.
 pub(super) fn is_rigid(system: &System, contact: usize) -> bool {
-    let mut bodies = system.touching[contact].iter();
+    let mut bodies = system.contacts[contact].bodies.iter();
     bodies.all(|&body| system.bodies[body].as_rigid().is_some())
 }

@@ -28,7 +28,7 @@ impl Driver {
         }
         self.state.motion.contact_force.fill(0.0);
         for (number, contact) in system.contacts.iter().enumerate() {
-            let zone = system.zone_of_body[system.sides[number].0];
+            let zone = system.zone_of_body[system.contacts[number].secondary_body];
             let law = self.law(contact);
             let keeps = system.schemes[zone].get().keeps_acceleration();
             if law.get().level() != Level::GapAndRate || !keeps || self.is_static() {

@@ -3,12 +3,13 @@
 use std::sync::Arc;
 
 use carom_contact::law::{End, Level, Local, Status};
-use carom_contact::{Balance, Contact, Sliding};
+use carom_contact::{Balance, Sliding};
 
 use super::deletion::as_narrowed;
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
+use carom_system::ContactPair;
 
 /// Entry of a row of unit normals that is no rounding of a direction.
 const CLEARLY: f64 = 1e-3;
@@ -72,7 +73,7 @@ impl Driver {
             }
             placed = configuration;
             if stand {
-                let (first, place) = (system.first_point[k], &self.vectors.place);
+                let (first, place) = (system.contacts[k].range.start, &self.vectors.place);
                 let initial = &self.initial[k].rows;
                 self.pairing.rows.move_again(first, initial, place);
                 continue;
@@ -84,7 +85,7 @@ impl Driver {
                 self.move_gaps(first, paired);
             }
         }
-        let stands = |contact: &Contact| contact.sliding == Sliding::Small && !contact.moves();
+        let stands = |contact: &ContactPair| contact.sliding == Sliding::Small && !contact.moves();
         self.rows_stand = !turns && !predicts && system.contacts.iter().all(stands);
         self.stack();
     }
@@ -102,7 +103,10 @@ impl Driver {
         places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
         let contact = as_narrowed(&self.narrowed, &system, number);
         if self.far.has(number) {
-            let (gaps, first) = (&self.state.interface.gap, system.first_point[number]);
+            let (gaps, first) = (
+                &self.state.interface.gap,
+                system.contacts[number].range.start,
+            );
             let inside = |point: usize| gaps[first + point] < 0.0;
             let kept = (&mut self.search[number], &mut self.pairing);
             return self.far.append((contact, number), &places, &inside, kept);
@@ -277,7 +281,7 @@ impl Driver {
 
     /// Gap of a contact that counts as none where a step ends, m.
     pub(super) fn gap_tolerance(&self, contact: usize) -> f64 {
-        100.0 * self.system.tolerances[contact]
+        100.0 * self.system.contacts[contact].tolerance
     }
 
     /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.

@@ -88,16 +88,13 @@ impl Far {
         let Target::Surface(faces) = &contact.target else {
             return None;
         };
-        let (secondary, Some(primary)) = system.sides[number] else {
-            return None;
-        };
         if !contact.near_only {
             return None;
         }
         let (_, spread) = contact.nodes();
         let [secondary, primary] = match system.is_of_many(number) {
             true => [Owner::Contact(number); 2],
-            false => [secondary, primary].map(Owner::Body),
+            false => [contact.secondary_body, contact.primary_body?].map(Owner::Body),
         };
         let own = contact.points.iter().flat_map(|point| point.carriers());
         let own: Vec<u32> = own.map(|(node, _)| node).collect();

@@ -32,7 +32,7 @@ impl Driver {
                 *q = self.slid(at, k, (without, time)) + step;
             }
             Tangential {
-                mu: self.system.friction[self.system.contact_of(at)],
+                mu: self.system.contacts[self.system.contact_of(at)].friction,
                 free: q,
                 slip: self.slips[at],
                 force: self.next.interface.friction[at],

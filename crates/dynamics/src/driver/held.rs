@@ -28,7 +28,7 @@ impl Driver {
             let all = as_narrowed(&self.narrowed, &system, k).held(&places, &self.search[k]);
             self.vectors.place = u;
             for held in all {
-                let name = self.name(system.first_point[k] + held.point);
+                let name = self.name(system.contacts[k].range.start + held.point);
                 tracing::debug!(
                     "step {}: {name} alternated between faces and stays with one; the error of its gap is {:.1e} of the face",
                     self.state.step + 1,

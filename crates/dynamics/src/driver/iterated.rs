@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use carom_algebra::Error as AlgebraError;
-use carom_contact::Contact;
 use carom_nonsmooth::Compliance as D;
 
 use super::Driver;
@@ -12,12 +11,13 @@ use crate::coulomb::{Posed, Tangential};
 use crate::error::{Error, MeshNode};
 use crate::interface::Failure;
 use crate::operator::Operators;
+use carom_system::ContactPair;
 
 impl Driver {
     /// Whether the motion without contact forces is found together with them: no matrix has a factor, and nobody asks for it alone.
     pub(super) fn finds_all_at_once(&mut self) -> bool {
         let system = &*self.system;
-        let asks = |contact: &Contact| contact.law.needs_free_gap();
+        let asks = |contact: &ContactPair| contact.law.needs_free_gap();
         let asked = system.adaptive.is_some() || system.contacts.iter().any(asks);
         let iterates = |(operators, _): (&mut Operators, &mut Compliance)| operators.iterate();
         !asked && !self.candidates.is_empty() && self.effective.both().is_some_and(iterates)

@@ -14,7 +14,7 @@ impl Driver {
         for point in 0..self.system.points() {
             let (gap, flight) = (interface.gap[point], interface.flight[point]);
             let number = self.system.contact_of(point);
-            let tolerance = self.system.tolerances[number];
+            let tolerance = self.system.contacts[number].tolerance;
             if flies((gap, flight), tolerance, (rules, largest)) {
                 let law = self.system.contacts[number].law.get();
                 let zone = self.system.zone_of(number);

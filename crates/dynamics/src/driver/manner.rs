@@ -11,8 +11,8 @@ impl Driver {
     pub(super) fn renew_manners(&mut self) {
         let manner = |number: usize| {
             let paired = self.configuration(number);
-            let (secondary, primary) = self.system.sides[number];
-            let sides = [Some(secondary), primary].into_iter().flatten();
+            let contact = &self.system.contacts[number];
+            let sides = std::iter::once(contact.secondary_body).chain(contact.primary_body);
             let maps = sides.map(|body| &self.maps.all()[self.system.zone_of_body[body]]);
             Manner {
                 paired,

@@ -4,12 +4,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_algebra::reduce::norm_squared;
-use carom_contact::{Contact, Sliding};
+use carom_contact::Sliding;
 
 use super::Driver;
 use super::effective::{At, Turning};
 use super::floating::{GROWTH as HEAVIER, LARGEST};
 use crate::error::Error;
+use carom_system::ContactPair;
 
 /// Motion over the size of the model by which loads say what stiffness a model has.
 const DEFLECTION: f64 = 1e-3;
@@ -48,7 +49,7 @@ impl Driver {
     /// symmetric, of contacts whose points slide how rows and weights move with them.
     fn leaves_out(&self) -> bool {
         let mut contacts = self.system.contacts.iter().enumerate();
-        let slides = |(number, contact): (usize, &Contact)| {
+        let slides = |(number, contact): (usize, &ContactPair)| {
             contact.sliding == Sliding::Finite && self.turning(number) != 0.0
         };
         self.between() || contacts.any(slides)

@@ -40,7 +40,8 @@ impl Driver {
         self.rows_stand = false;
         let begins = self.active.begins();
         if begins {
-            pairing.open_all(&system.contacts, system.dim);
+            let contacts = system.contacts.iter().map(|pair| &pair.contact);
+            pairing.open_all(contacts, system.dim);
         } else {
             self.active.keep(pairing.near());
             pairing.reopen();
@@ -61,7 +62,7 @@ impl Driver {
         let system = Arc::clone(&self.system);
         let (contact, first) = (
             as_narrowed(&self.narrowed, &system, number),
-            system.first_point[number],
+            system.contacts[number].range.start,
         );
         let own = match self.active.own_of(number) {
             Own::All => None,

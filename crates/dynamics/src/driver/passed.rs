@@ -19,7 +19,7 @@ impl Driver {
             system.places(self.state.time + self.dt, &new.u, &new.frames),
         ];
         let ways = [&ways[0], &ways[1]];
-        let first = system.first_point[number];
+        let first = system.contacts[number].range.start;
         let forces = [&self.state.interface.force, &self.next.interface.force];
         let closed = |k: usize| forces.iter().any(|force| force[first + k] != 0.0);
         let passed = match self.active.own_of(number) {

@@ -117,7 +117,7 @@ impl Driver {
         let changed = |point: usize| new.carried[point] - new.force[point];
         let contact = &system.contacts[k];
         let crush = |point: usize| {
-            let share = contact.points[point - system.first_point[k]].share;
+            let share = contact.points[point - system.contacts[k].range.start].share;
             let energy = |crush: f64| share * contact.law.crush_energy(crush);
             match new.crush[point] == old.crush[point] {
                 true => 0.0,
@@ -199,7 +199,7 @@ impl Driver {
             let start = end - (rows.product(point, new) - rows.product(point, old));
             let depth = -end.min(start);
             if depth > passing.value {
-                let point = &contact.points[point - system.first_point[number]];
+                let point = &contact.points[point - system.contacts[number].range.start];
                 let node = system.mesh_node[point.node() as usize];
                 passing.take(depth, node, self.state.time + self.dt);
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use carom_algebra::Interrupt;
 use carom_bodies::{Scratch, Stored};
-use carom_contact::{Contact, Pairing, Search};
+use carom_contact::{Pairing, Search};
 
 use super::active::Active;
 use super::carried::Carried;
@@ -44,6 +44,7 @@ use crate::shapes::Rates;
 use crate::state::{Links, State, empty_state, state_without_motion};
 use crate::system::{Maps, System};
 use crate::watch::Watch;
+use carom_system::ContactPair;
 
 impl Driver {
     /// Sets the initial state.
@@ -70,7 +71,7 @@ impl Driver {
         let zeros = || vec![0.0; n];
         let scheme = system.scheme.get();
         let maps = Maps::new(&system, system.dt, system.dt);
-        let projects = |contact: &Contact| contact.law.projects();
+        let projects = |contact: &ContactPair| contact.law.projects();
         let stages = scheme.projects_predictor()
             || scheme.restores_contact_work()
             || sums_compliances(&system, maps.first());

@@ -22,7 +22,8 @@ pub(super) fn first_thought(friction: &[f64; 2]) -> Slip {
 impl Driver {
     /// Whether a candidate has friction.
     pub(super) fn rubs(&self) -> bool {
-        let mu = |&point: &u32| self.system.friction[self.system.contact_of(point as usize)];
+        let mu =
+            |&point: &u32| self.system.contacts[self.system.contact_of(point as usize)].friction;
         self.system.tangents() > 0 && self.candidates.iter().any(|point| mu(point) > 0.0)
     }
 
@@ -58,7 +59,7 @@ impl Driver {
     pub(super) fn slides_by_rate(&self) -> bool {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
-        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.friction[k] > 0.0);
+        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.contacts[k].friction > 0.0);
         let way_is_known = self.maps.all().iter().all(|map| map.displacement.x == 0.0);
         !self.maps.is_static() && (way_is_known || rubbing.all(of_rate))
     }
@@ -128,7 +129,7 @@ impl Driver {
         let (Some(t), Some(slip)) = (interface.friction.get(point), self.slips.get(point)) else {
             return 0.0;
         };
-        let mu = self.system.friction[self.system.contact_of(point)];
+        let mu = self.system.contacts[self.system.contact_of(point)].friction;
         let beyond = t[0].hypot(t[1]) - mu * interface.force[point].max(0.0);
         let defect = match slip {
             Slip::Slip => beyond.abs(),

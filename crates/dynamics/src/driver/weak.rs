@@ -6,6 +6,7 @@ use carom_nonsmooth::Weak;
 
 use crate::error::Error;
 use crate::system::System;
+use carom_system::ContactPair;
 
 /// Part of 1 / (w r) that a Gauss point beside a held node is softer by. No force on such a node moves anything, so that the
 /// multiplier there is redundant: of all that give the same motion this takes the least, to eight digits.
@@ -37,7 +38,7 @@ pub(crate) struct WithWeak {
 
 impl WeakForms {
     pub(crate) fn new(system: &System) -> Result<WeakForms, Error> {
-        let form = |contact: &carom_contact::Contact| {
+        let form = |contact: &ContactPair| {
             let Integration::Weak { r } = contact.integration else {
                 return Ok(None);
             };
@@ -79,7 +80,7 @@ impl WeakForms {
     ) {
         for (k, form) in self.forms.iter_mut().enumerate() {
             let Some(form) = form else { continue };
-            let range = system.first_point[k]..system.first_point[k + 1];
+            let range = system.contacts[k].range.start..system.contacts[k + 1].range.start;
             let of_contact = points
                 .clone()
                 .filter(|(point, _)| range.contains(point))
@@ -95,8 +96,10 @@ impl WeakForms {
         }
         let contact = system.contact_of(point);
         self.forms[contact].as_ref().map_or(0.0, |form| {
-            form.weak
-                .pull(point - system.first_point[contact], &form.multiplier)
+            form.weak.pull(
+                point - system.contacts[contact].range.start,
+                &form.multiplier,
+            )
         })
     }
 
@@ -105,7 +108,7 @@ impl WeakForms {
     pub(crate) fn shift(&self, system: &System, point: usize, force: f64) -> Option<(f64, Level)> {
         let contact = system.contact_of(point);
         let form = self.forms[contact].as_ref()?;
-        let place = point - system.first_point[contact];
+        let place = point - system.contacts[contact].range.start;
         let own = form.weak.own_compliance(place) * force;
         Some((own - form.weak.pull(place, &form.multiplier), form.level))
     }
@@ -160,9 +163,10 @@ impl WithWeak {
             Level::Gap => factors[0],
             Level::Rate | Level::GapAndRate => factors[1],
         };
-        let ends = [contact, contact + 1]
-            .map(|k| candidates.partition_point(|&point| (point as usize) < system.first_point[k]));
-        let place = |k: usize| candidates[k] as usize - system.first_point[contact];
+        let ends = [contact, contact + 1].map(|k| {
+            candidates.partition_point(|&point| (point as usize) < system.contacts[k].range.start)
+        });
+        let place = |k: usize| candidates[k] as usize - system.contacts[contact].range.start;
         for i in ends[0]..ends[1] {
             for j in ends[0]..=i {
                 let entry = form.weak.compliance(place(i), place(j)) / factor;

@@ -90,7 +90,10 @@ impl Begin {
         facts: Vec<f64>,
     ) -> Begin {
         let mut of_contacts = contact_nodes(system, |_| true);
-        let faces = system.secondary_faces.iter().flatten();
+        let faces = system
+            .contacts
+            .iter()
+            .flat_map(|pair| &pair.secondary_faces);
         of_contacts.extend(faces.flat_map(|face| face.corners()));
         of_contacts.sort_unstable();
         of_contacts.dedup();

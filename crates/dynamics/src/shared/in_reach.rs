@@ -11,6 +11,7 @@ use carom_ranks::Ranks;
 use crate::of_contact::OfContact;
 use crate::state::State;
 use crate::system::System;
+use carom_system::ContactPair;
 
 /// How far nodes may move before faces are looked for again, over the largest distance at which anything is looked at: with more, points before edges of
 /// walls are near the other side of the edge.
@@ -64,7 +65,7 @@ impl InReach {
         at_ends: impl Fn(usize) -> bool,
     ) -> InReach {
         let contacts = system.contacts.iter().zip(reaches).enumerate();
-        let of = |(number, (contact, &most)): (usize, (&Contact, &f64))| {
+        let of = |(number, (contact, &most)): (usize, (&ContactPair, &f64))| {
             let points = contact.points.len();
             (follows(contact) && at_ends(number) && most.is_finite()).then(|| Followed {
                 search: Search::default(),

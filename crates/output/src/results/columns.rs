@@ -70,7 +70,7 @@ pub(super) fn contact_columns(system: &System, k: usize) -> Vec<String> {
     names.extend(impulsive.then(|| add("impulsive", "N s")));
     let resultant = |i: &&str| add(&format!("resultant {i}"), "N");
     names.extend(COMPONENTS[..system.dim].iter().map(resultant));
-    if system.moments[k].is_some() {
+    if system.contacts[k].moment.is_some() {
         let turns = &COMPONENTS[moments(system)];
         names.extend(turns.iter().map(|i| add(&format!("moment {i}"), "N m")));
     }
@@ -79,7 +79,7 @@ pub(super) fn contact_columns(system: &System, k: usize) -> Vec<String> {
         add("gap rate", "m/s"),
         add("closed points", ""),
     ]);
-    if system.friction[k] > 0.0 {
+    if system.contacts[k].friction > 0.0 {
         names.extend([add("friction", "N"), add("slipping points", "")]);
     }
     names

@@ -420,6 +420,6 @@ fn opening_speed(results: &Results, contact: usize, velocities: &[[f64; 3]]) -> 
         }
         momentum / mass
     };
-    let (secondary, primary) = results.system.sides[contact];
-    primary.map_or(0.0, along) - along(secondary)
+    let contact = &results.system.contacts[contact];
+    contact.primary_body.map_or(0.0, along) - along(contact.secondary_body)
 }

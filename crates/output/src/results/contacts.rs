@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use carom_contact::{Contact as Pair, Integration};
+use carom_contact::Integration;
+use carom_dynamics::ContactPair;
 use carom_dynamics::{ContactRecord, Impact, NoRestitution};
 
 use crate::results::impacts::ContactTotals;
@@ -17,7 +18,7 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
     let in_time = |value: f64| (!results.is_static()).then_some(value);
     let all_impacts = &results.impacts.all;
     let name = |k: usize| system.contacts[k].name.as_str();
-    let one = |(k, (contact, totals)): (usize, (&Pair, &ContactTotals))| {
+    let one = |(k, (contact, totals)): (usize, (&ContactPair, &ContactTotals))| {
         let none = ContactRecord::default();
         let records = &results.last.records;
         let record = records.contacts.get(k).unwrap_or(&none);
@@ -49,8 +50,8 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 }),
                 impulse: in_time(record.impulse()),
                 impulsive: record.impulse_of_jumps(),
-                friction: (system.friction[k] > 0.0).then_some(Friction {
-                    coefficient: system.friction[k],
+                friction: (system.contacts[k].friction > 0.0).then_some(Friction {
+                    coefficient: system.contacts[k].friction,
                     peak_force: totals.peak_friction,
                     loss: record.friction_loss(),
                 }),

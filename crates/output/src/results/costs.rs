@@ -55,7 +55,12 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
     let mut timings: BTreeMap<String, f64> = parts
         .map(|(name, time)| (name.to_owned(), time.as_secs_f64()))
         .into();
-    if results.system.friction.iter().all(|mu| *mu == 0.0) {
+    if results
+        .system
+        .contacts
+        .iter()
+        .all(|pair| pair.friction == 0.0)
+    {
         timings.remove("friction");
     }
     if results.last.step > 0 {

@@ -335,7 +335,7 @@ impl SurfaceGrid {
             points,
             integration,
             ..
-        } = &system.contacts[contact];
+        } = &system.contacts[contact].contact;
         if let Integration::Points | Integration::Weak { .. } = integration {
             return SurfaceGrid::of_points(system, contact, points);
         }
@@ -348,7 +348,7 @@ impl SurfaceGrid {
         };
         let mut cells = Vec::new();
         for kind in Kind::ALL {
-            let faces = system.secondary_faces[contact].iter();
+            let faces = system.contacts[contact].secondary_faces.iter();
             let of_kind = faces.filter_map(|face| shown(face, &place));
             let of_kind = of_kind.filter(|(shown, _)| *shown == kind);
             let nodes: Vec<u32> = of_kind.flat_map(|(_, nodes)| nodes).collect();
@@ -380,7 +380,8 @@ impl SurfaceGrid {
         snapshot: &Snapshot,
     ) -> Result<(), Error> {
         let contact = &system.contacts[self.contact];
-        let range = system.first_point[self.contact]..system.first_point[self.contact + 1];
+        let range = system.contacts[self.contact].range.start
+            ..system.contacts[self.contact + 1].range.start;
         let interface = &snapshot.interface;
         let (force, status) = (
             &interface.force[range.clone()],
@@ -436,7 +437,7 @@ impl SurfaceGrid {
                 values: Values::Vector(&displacement),
             },
         ];
-        if system.friction[self.contact] > 0.0 && !traction.is_empty() {
+        if system.contacts[self.contact].friction > 0.0 && !traction.is_empty() {
             fields.push(scalar("friction_traction", &traction));
         }
         fields.extend(signs.into_iter().map(|(name, values)| Field {

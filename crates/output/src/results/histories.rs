@@ -301,13 +301,13 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
             .copied()
             .map(Cell::Number),
     );
-    if system.moments[k].is_some() {
+    if system.contacts[k].moment.is_some() {
         row.extend(moments(system).map(|i| Cell::Number(contact.moment[i])));
     }
     // the gap of what faces nothing does not exist
     row.push(Some(contact.gap).filter(|gap| *gap != f64::INFINITY).into());
     row.extend([contact.rate, contact.closed as f64].map(Cell::Number));
-    if system.friction[k] > 0.0 {
+    if system.contacts[k].friction > 0.0 {
         row.extend([contact.friction, contact.slipping as f64].map(Cell::Number));
     }
 }

@@ -107,7 +107,7 @@ impl Impacts {
                 mean: PeakOfMean::new(window),
                 window,
                 of_parts: zoning.is_some_and(|zoning| {
-                    let mut bodies = system.touching[contact].iter();
+                    let mut bodies = system.contacts[contact].bodies.iter();
                     bodies.any(|body| zoning.is_part(*body))
                 }),
                 closed: 0.0,
@@ -166,10 +166,10 @@ impl Impacts {
         // forces of static steps have a size, but no duration
         let takes_time = report.step > system.static_steps();
         for (time, dt, contacts) in report.parts().filter(|_| report.step > 0) {
-            let moments = system.moments.iter().zip(contacts);
-            for (totals, (about, contact)) in self.told.contacts.iter_mut().zip(moments) {
+            let contacts = system.contacts.iter().zip(contacts);
+            for (totals, (pair, contact)) in self.told.contacts.iter_mut().zip(contacts) {
                 totals.follow_resultant(contact.resultant, time);
-                if let Some(about) = about {
+                if let Some(about) = &pair.moment {
                     totals.follow_moment(about.point, contact.moment, time);
                 }
                 totals.peak_friction = totals.peak_friction.max(contact.friction);
@@ -206,8 +206,8 @@ impl Impacts {
     fn push(&mut self, system: &System, impact: &Impact) -> Result<(), Error> {
         let totals = &mut self.told.contacts[impact.contact as usize];
         let peak_mean_force = (totals.window > 0.0).then(|| totals.mean.take());
-        let (secondary, primary) = system.sides[impact.contact as usize];
-        let are_two = Some(secondary) != primary && !system.is_of_many(impact.contact as usize);
+        let pair = &system.contacts[impact.contact as usize];
+        let are_two = Some(pair.secondary_body) != pair.primary_body && !pair.is_of_many;
         let of_two = |value: f64| are_two.then_some(value);
         let over = |value: f64| (!impact.unfinished).then_some(value);
         let parting = |value: f64| over(value).and_then(of_two).filter(|_| !totals.of_parts);
@@ -243,7 +243,7 @@ impl Impacts {
 /// A tenth of the time that a wave takes along the secondary body (the diagonal of its box), s: longer than the
 /// oscillations behind a front, which are a matter of the mesh, and shorter than the impact. Bodies joined by links are one.
 fn mean_window(system: &System, zoning: Option<&Zoning>, contact: usize) -> f64 {
-    let (body, _) = system.sides[contact];
+    let body = system.contacts[contact].secondary_body;
     let own = [body];
     let bodies = zoning.map_or(&own[..], |zoning| &zoning.joined[body]);
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);

@@ -145,7 +145,7 @@ impl Instants {
             let acting = report.contacts.iter().enumerate();
             let acting = acting.filter(|(_, contact)| contact.force > 0.0);
             let acting = acting.filter_map(|(contact, report)| {
-                let forces = &state.interface.force[system.first_point[contact]..];
+                let forces = &state.interface.force[system.contacts[contact].range.start..];
                 let points = system.contacts[contact].points.iter().zip(forces);
                 let (point, _) = points.max_by(|a, b| a.1.total_cmp(b.1))?;
                 Some(Acting {

@@ -112,8 +112,8 @@ fn are_joined(system: &System, pair: [usize; 2]) -> bool {
         let has = |part: usize| row.iter().any(|(i, _)| system.part_of(*i as usize) == part);
         has(parts[0]) && has(parts[1])
     };
-    let mut contacts = system.touching.iter();
+    let mut contacts = system.contacts.iter();
     parts[0] == parts[1]
-        || contacts.any(|bodies| pair.iter().all(|body| bodies.contains(body)))
+        || contacts.any(|contact| pair.iter().all(|body| contact.bodies.contains(body)))
         || system.link_rows.iter().any(linked)
 }

@@ -290,11 +290,13 @@ impl Results {
             false => self.keep(run),
         };
         let forces = |k: usize| {
-            let points = self.system.first_point[k]..self.system.first_point[k + 1];
+            let points =
+                self.system.contacts[k].range.start..self.system.contacts[k + 1].range.start;
             state.interface.force[points].iter().any(|f| *f != 0.0)
         };
         let crush = |k: usize| {
-            let points = self.system.first_point[k]..self.system.first_point[k + 1];
+            let points =
+                self.system.contacts[k].range.start..self.system.contacts[k + 1].range.start;
             let law = &self.system.contacts[k].law;
             let own = state.interface.crush[points]
                 .iter()

@@ -113,8 +113,9 @@ pub(crate) fn contact_point(
         Some(reference) => reference.axis,
         None => normal(system, index, secondary, primary),
     };
-    let (body, other) = system.sides[index];
-    let mut names = [Some(body), other].map(|body| body.map(|b| system.bodies[b].name()));
+    let contact = &system.contacts[index];
+    let mut names = [Some(contact.secondary_body), contact.primary_body]
+        .map(|body| body.map(|b| system.bodies[b].name()));
     if names[0] == names[1] || system.is_of_many(index) {
         names = [Some("secondary"), Some("primary")];
     }

@@ -1,7 +1,7 @@
 //! Whether the elements resolve the patch in which bodies touch.
 
 use carom_bodies::Body;
-use carom_contact::{Contact, Integration, Law};
+use carom_contact::{Integration, Law};
 use carom_dynamics::System;
 
 use super::resolution::LESSER;
@@ -39,8 +39,10 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
     let Some((name, value)) = worst(ratios) else {
         return Finding::Absent;
     };
-    let named = |contact: &Contact| contact.name == name;
-    let k = system.contacts.iter().position(named).unwrap_or_default();
+    let mut contacts = system.contacts.iter();
+    let k = contacts
+        .position(|contact| contact.name == name)
+        .unwrap_or_default();
     Finding::Line(Line::new(
         "points-closed",
         (
@@ -64,7 +66,12 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
 /// indent each other; reduced bodies carry forces at the nodes that the case names.
 fn indents(system: &System, contact: usize) -> bool {
     let is_stop = matches!(system.contacts[contact].law, Law::Stop(_));
-    let bodies = || system.touching[contact].iter().map(|&k| &system.bodies[k]);
+    let bodies = || {
+        system.contacts[contact]
+            .bodies
+            .iter()
+            .map(|&k| &system.bodies[k])
+    };
     let is_continuum = |body: &Body| {
         let solid = body.as_solid();
         solid.is_some_and(|solid| solid.kinematics().dim() > 1)
@@ -79,7 +86,7 @@ fn nodes(system: &System, contact: usize) -> f64 {
     let count = match system.contacts[contact].integration {
         Integration::Node | Integration::Mortar { .. } => points,
         Integration::Points | Integration::Weak { .. } => {
-            let faces = system.secondary_faces[contact].iter();
+            let faces = system.contacts[contact].secondary_faces.iter();
             let mut nodes: Vec<u32> = faces.flat_map(|face| face.corners()).copied().collect();
             nodes.sort_unstable();
             nodes.dedup();

@@ -91,7 +91,7 @@ fn has_duration(system: &System, contact: usize) -> bool {
 
 /// Whether waves run in a body of a contact.
 pub(super) fn has_waves(system: &System, contact: usize) -> bool {
-    let mut bodies = system.touching[contact].iter();
+    let mut bodies = system.contacts[contact].bodies.iter();
     bodies.any(|&body| system.bodies[body].wave_speed().is_some())
 }
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_contact::Target;
-use carom_dynamics::System;
+use carom_dynamics::{ContactPair, System};
 
 use crate::page::block::{Array, Block, COARSE, FINE};
 use crate::page::schema::{Field, Frame, Model, Obstacle, Peak};
@@ -366,7 +366,7 @@ fn box_of(system: &System, results: &Results) -> Vec<Near> {
     let seen = &results.stills.seen;
     let all = instants(results);
     let least = 0.02 * size(system);
-    let of = |contact: &carom_contact::Contact| {
+    let of = |contact: &ContactPair| {
         let [mut low, mut high] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for (still, _) in &all {
             for node in contact.points.iter().map(carom_contact::Point::node) {
@@ -399,7 +399,7 @@ fn box_of(system: &System, results: &Results) -> Vec<Near> {
 }
 
 fn drawn_obstacles(
-    contacts: &[carom_contact::Contact],
+    contacts: &[ContactPair],
     (system, near): (&System, &[Near]),
     block: &mut Block,
 ) -> Vec<Obstacle> {

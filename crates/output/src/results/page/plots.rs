@@ -1,8 +1,5 @@
 //! The plots of a page, from what the run gathered.
 
-use carom_contact::Contact;
-use carom_dynamics::MomentAbout;
-
 use crate::page::block::Block;
 use crate::page::draft::{self, Draft, Line, draft, line, zipped};
 use crate::page::schema::Plot;
@@ -15,6 +12,7 @@ use crate::results::page::series::ContactSeries;
 use crate::results::sensor::COMPONENTS;
 use crate::results::stills::Still;
 use crate::results::trace::Trace;
+use carom_dynamics::ContactPair;
 
 /// Contacts with plots of their own; more share them, eight in each.
 const OWN: usize = 4;
@@ -157,9 +155,8 @@ fn of_contacts(results: &Results) -> Vec<Draft> {
 /// Moments of the contacts that name a point.
 fn contact_moments(results: &Results) -> Vec<Draft> {
     let (system, series) = (&results.system, &results.series.series);
-    let all = system.contacts.iter().zip(&system.moments);
-    let one = |((contact, about), series): ((&Contact, &Option<MomentAbout>), &ContactSeries)| {
-        let point = about.as_ref()?.point;
+    let one = |(contact, series): (&ContactPair, &ContactSeries)| {
+        let point = contact.moment.as_ref()?.point;
         let place: Vec<String> = point[..system.dim].iter().map(|x| format!("{x}")).collect();
         let title = format!(
             "Moment of contact {} about ({}) m",
@@ -170,7 +167,8 @@ fn contact_moments(results: &Results) -> Vec<Draft> {
         let lines = names.map(|(name, trace)| computed(*name, trace)).collect();
         Some(draft("plot-moment", title, ("moment", "N m"), lines))
     };
-    all.zip(&series.contacts).filter_map(one).collect()
+    let all = system.contacts.iter().zip(&series.contacts);
+    all.filter_map(one).collect()
 }
 
 /// Motion of the contact point that the static figures show, with the exact one.

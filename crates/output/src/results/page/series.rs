@@ -7,6 +7,7 @@ use crate::results::columns::moments;
 use crate::results::impacts::ContactTotals;
 use crate::results::sensor::Sensor;
 use crate::results::trace::Trace;
+use carom_dynamics::ContactPair;
 
 /// Samples of all traces together, 16 bytes each, and the most of one.
 const SAMPLES: usize = 1 << 19;
@@ -99,18 +100,22 @@ impl SeriesOf {
     pub(crate) fn new(system: &System, probes: &[Vec<Sensor>]) -> SeriesOf {
         let components: usize = probes.iter().map(Vec::len).sum();
         let named = system.supports.len().min(NAMED);
-        let turning = system.moments.iter().flatten().count();
+        let turning = system
+            .contacts
+            .iter()
+            .filter(|pair| pair.moment.is_some())
+            .count();
         let loads = system.nonlinear.load_names.len().min(NAMED);
         let triples = turning + components + named + loads;
         let count = 4 * system.contacts.len() + 3 * triples + 4;
         let limit = (SAMPLES / count).min(MOST);
         let trace = || Trace::of(limit);
-        let contact = |about: &Option<_>| ContactSeries {
+        let contact = |pair: &ContactPair| ContactSeries {
             force: trace(),
             mean: trace(),
             gap: trace(),
             impulse: trace(),
-            moment: match about {
+            moment: match pair.moment {
                 Some(_) => moments(system).map(|_| trace()).collect(),
                 None => Vec::new(),
             },
@@ -122,7 +127,7 @@ impl SeriesOf {
         };
         SeriesOf {
             series: Series {
-                contacts: system.moments.iter().map(contact).collect(),
+                contacts: system.contacts.iter().map(contact).collect(),
                 probes: probes.iter().map(of_probe).collect(),
                 supports: [trace(), trace(), trace()],
                 named: (0..named).map(|_| [trace(), trace(), trace()]).collect(),

@@ -65,10 +65,9 @@ pub(super) fn contacts(system: &System, of: (&Seen, &Chosen), block: &mut Block)
         }
         drawn.side(block)
     };
-    let contacts = system.contacts.iter().zip(&system.secondary_faces);
-    let both = contacts.map(|(contact, secondary)| Sides {
+    let both = system.contacts.iter().map(|contact| Sides {
         name: contact.name.clone(),
-        secondary: side(secondary),
+        secondary: side(&contact.secondary_faces),
         primary: match &contact.target {
             Target::Surface(faces) => side(faces),
             Target::Rigid(_) => side(&[]),

@@ -243,7 +243,7 @@ pub(crate) fn slips(system: &System, point: usize, interface: &InterfaceState) -
     let Some([one, other]) = interface.friction.get(point) else {
         return false;
     };
-    let bound = system.friction[system.contact_of(point)] * interface.force[point];
+    let bound = system.contacts[system.contact_of(point)].friction * interface.force[point];
     bound > 0.0 && one.hypot(*other) >= bound * (1.0 - 1e-6)
 }
 
