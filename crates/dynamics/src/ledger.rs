@@ -10,9 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
-use crate::step_map::{Impulse, StepMap};
+use crate::step_forces::OutsideForces;
+use crate::step_map::StepMap;
+use crate::step_terms::{Beyond, Energies, Jump, StepTerms};
 use crate::sum::Sum;
-use crate::system::{Maps, Motion, System};
+use crate::system::{Motion, System};
 use crate::tolerated::Tolerated;
 
 /// What the ledger shows at an instant; works and dissipations since the start, J.
@@ -174,116 +176,17 @@ pub struct Ledger {
     deletion: Sum,
     hardening: f64,
     hourglass: f64,
-    impulses: [[Sum; 6]; 5],
-    forces: Forces,
-}
-
-/// What a step that is not linear adds to the balance, J.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Beyond {
-    /// Work of supports that move.
-    pub(crate) work_supports: f64,
-    /// Work of obstacles that move.
-    pub(crate) work_obstacles: f64,
-    /// Dissipation of the materials.
-    pub(crate) dissipation_material: f64,
-    /// Dissipation of the damping.
-    pub(crate) dissipation_damping: f64,
-    /// Dissipation of friction.
-    pub(crate) dissipation_friction: f64,
-    /// Dissipation of bulk viscosity.
-    pub(crate) dissipation_viscosity: f64,
-    /// Energy that hardening stores at the end of the step.
-    pub(crate) hardening: f64,
-    /// Energy of hourglass modes at the end of the step.
-    pub(crate) hourglass: f64,
-    /// What the iterations of the step may leave unbalanced.
-    pub(crate) tolerated: Tolerated,
-}
-
-/// Resultants of the forces of a step: loads, contacts, supports, supports against contact forces where these have an
-/// impulse of their own; links.
-pub(crate) type Forces = [Resultant; 5];
-
-/// Energies of a state, J.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Energies {
-    pub(crate) kinetic: f64,
-    pub(crate) strain: f64,
-    /// |a|²_M.
-    pub(crate) acceleration: f64,
-    /// |m|²_K.
-    pub(crate) memory: f64,
-    /// U(u - lag v) - U(u).
-    pub(crate) lagged: f64,
-    /// Momentum.
-    pub(crate) momentum: Resultant,
-}
-
-/// What a projection after the step does.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Jump {
-    /// Work of its impulses on the mean of the velocities around it, J.
-    pub(crate) work: f64,
-    /// Work of obstacles that move in its impulses, J.
-    pub(crate) work_obstacles: f64,
-    /// What the scheme's term in |a|² loses, J.
-    pub(crate) dissipation: f64,
-    /// Its impulses, from contacts, supports and links.
-    pub(crate) impulses: [Resultant; 3],
-    /// Forces of contacts and supports that the next step begins with.
-    pub(crate) forces: [Resultant; 2],
-    /// What it adds to those of links.
-    pub(crate) links: Resultant,
-}
-
-/// What changed in a step: |Δv|²_M, |Δu|²_K, |Δa|²_M, |Δm|²_K, Δu·MΔa, Δa·NᵀP.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Squares {
-    pub(crate) velocity: f64,
-    pub(crate) displacement: f64,
-    pub(crate) acceleration: f64,
-    pub(crate) filtered: f64,
-    pub(crate) mixed: f64,
-    pub(crate) contact: f64,
-    /// What a stage before the step takes, J.
-    pub(crate) stage: f64,
-}
-
-impl Energies {
-    /// These energies of a motion, with the term of the schemes where zones differ.
-    pub(crate) fn of_zones(self, maps: &Maps, system: &System, motion: &Motion) -> Energies {
-        match maps.only() {
-            Some(_) => self,
-            None => Energies {
-                acceleration: maps.square_of_acceleration(system, motion),
-                ..self
-            },
-        }
-    }
-
-    /// The term of the energy that the scheme balances beside kinetic and strain energy, J.
-    pub(crate) fn of_scheme(&self, identity: &EnergyIdentity) -> f64 {
-        identity.inertia * self.acceleration + identity.memory * self.memory + self.lagged
-    }
-}
-
-impl Squares {
-    /// What the scheme dissipates in the step, J.
-    fn dissipation(&self, identity: &EnergyIdentity) -> f64 {
-        identity.velocity * self.velocity
-            + identity.displacement * self.displacement
-            + identity.acceleration * self.acceleration
-            + identity.filtered * self.filtered
-            + identity.mixed * self.mixed
-            + identity.contact * self.contact
-            + self.stage
-    }
+    impulses: OutsideForces<[Sum; 6]>,
+    forces: OutsideForces<Resultant>,
 }
 
 impl Ledger {
     /// The balance at the start, with the forces there.
-    pub(crate) fn start(energies: &Energies, identity: &EnergyIdentity, forces: Forces) -> Ledger {
+    pub(crate) fn start(
+        energies: &Energies,
+        identity: &EnergyIdentity,
+        forces: OutsideForces<Resultant>,
+    ) -> Ledger {
         let balance = Balance {
             kinetic: energies.kinetic,
             strain: energies.strain,
@@ -308,23 +211,6 @@ impl Ledger {
         (self.initial.hardening, self.balance.hardening) = (hardening, hardening);
     }
 
-    /// Adds to the step that [`Ledger::add`] then closes what only a nonlinear one has.
-    pub(crate) fn go_beyond(&mut self, beyond: &Beyond) {
-        let terms = [
-            beyond.work_supports,
-            beyond.dissipation_material,
-            beyond.dissipation_damping,
-            beyond.dissipation_friction,
-            beyond.work_obstacles,
-            beyond.dissipation_viscosity,
-        ];
-        for (sum, term) in self.beyond.iter_mut().zip(terms) {
-            sum.add(term);
-        }
-        (self.hardening, self.hourglass) = (beyond.hardening, beyond.hourglass);
-        self.tolerated.add(&beyond.tolerated);
-    }
-
     /// Moves what deleted elements had stored at the end of the step just added to its own term.
     pub(crate) fn delete(&mut self, deleted: &Deleted) {
         let Stored {
@@ -344,60 +230,81 @@ impl Ledger {
         balance.dissipation_deletion = self.deletion.get();
     }
 
-    /// Adds an impulse of supports at the start of the step that [`Ledger::add`] then closes.
-    pub(crate) fn kick(&mut self, impulse: &Resultant) {
-        for i in 0..3 {
-            self.impulses[2][i].add(impulse.linear[i]);
-            self.impulses[2][3 + i].add(impulse.angular[i]);
+    /// This balance with a step.
+    pub(crate) fn after(&self, step: &StepTerms) -> Ledger {
+        let mut next = self.clone();
+        next.rounding.add(&step.rounding);
+        if let Some(term) = step.energy_of_scheme {
+            next.resize_to(term);
+        }
+        next.is_static = step.is_static;
+        add(&mut next.impulses.supports, &step.kick);
+        if let Some(beyond) = &step.beyond {
+            next.go_beyond(beyond);
+        }
+        next.work_loads.add(step.work_loads);
+        next.work_contact.add(step.work_contacts);
+        next.work_links.add(step.work_links);
+        next.dissipation.add(step.dissipation);
+        next.push(step);
+        next.close(&step.energies, step.identity);
+        if step.is_static {
+            // rigid motions take the work of the loads and leave no energy: it is a size that residuals are compared with
+            next.largest_energy = next.largest_energy.max(next.balance.work_loads.abs());
+        }
+        next
+    }
+
+    /// Adds the impulses of the forces.
+    fn push(&mut self, step: &StepTerms) {
+        let OutsideForces {
+            loads,
+            contacts,
+            supports,
+            held,
+            links,
+        } = &step.forces;
+        let (own, of_contacts) = (step.impulse, step.contact_impulse);
+        let (before, sums) = (&mut self.forces, &mut self.impulses);
+        for (force, impulse, before, sum) in [
+            (loads, own, &mut before.loads, &mut sums.loads),
+            (
+                contacts,
+                of_contacts,
+                &mut before.contacts,
+                &mut sums.contacts,
+            ),
+            (supports, own, &mut before.supports, &mut sums.supports),
+            (held, of_contacts, &mut before.held, &mut sums.held),
+            (links, own, &mut before.links, &mut sums.links),
+        ] {
+            let force = force.combine(impulse.gain, before, -impulse.carry);
+            let mean = before.combine(step.dt * impulse.old, &force, step.dt * impulse.new);
+            *before = force;
+            add(sum, &mean);
         }
     }
 
-    /// Adds a step of length `dt`: works on Δu of loads, contacts and links, squares of the scheme's dissipation, resultants of the forces.
-    pub(crate) fn add(
-        &mut self,
-        (dt, identity, impulses): (f64, &EnergyIdentity, [&Impulse; 2]),
-        energies: &Energies,
-        works: [f64; 3],
-        squares: &Squares,
-        forces: Forces,
-    ) {
-        self.work_loads.add(works[0]);
-        self.work_contact.add(works[1]);
-        self.work_links.add(works[2]);
-        self.dissipation.add(squares.dissipation(identity));
-        for (k, force) in forces.iter().enumerate() {
-            // contacts, and supports against them, in their own way
-            let impulse = impulses[[0, 1, 0, 1, 0][k]];
-            let before = self.forces[k];
-            let force = force.combine(impulse.gain, &before, -impulse.carry);
-            self.forces[k] = force;
-            let mean = before.combine(dt * impulse.old, &force, dt * impulse.new);
-            for i in 0..3 {
-                self.impulses[k][i].add(mean.linear[i]);
-                self.impulses[k][3 + i].add(mean.angular[i]);
-            }
+    /// What only a step that is not linear has.
+    fn go_beyond(&mut self, beyond: &Beyond) {
+        let terms = [
+            beyond.work_supports,
+            beyond.dissipation_material,
+            beyond.dissipation_damping,
+            beyond.dissipation_friction,
+            beyond.work_obstacles,
+            beyond.dissipation_viscosity,
+        ];
+        for (sum, term) in self.beyond.iter_mut().zip(terms) {
+            sum.add(term);
         }
-        self.close(energies, identity);
+        (self.hardening, self.hourglass) = (beyond.hardening, beyond.hourglass);
+        self.tolerated.add(&beyond.tolerated);
     }
 
-    /// The step that [`Ledger::add`] then closes is static, or not.
-    pub(crate) fn begin_step(&mut self, is_static: bool) {
-        self.is_static = is_static;
-    }
-
-    /// A static step: the work of the loads is a size that residuals are compared with, as rigid motions take it, and leave no
-    /// energy.
-    pub(crate) fn end_static_step(&mut self) {
-        self.largest_energy = self.largest_energy.max(self.balance.work_loads.abs());
-    }
-
-    /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work.
-    pub(crate) fn resize(&mut self, identity: &EnergyIdentity, energies: &Energies) {
-        self.resize_to(energies.of_scheme(identity));
-    }
-
-    /// The same, with that term as it is at the start of the step, J.
-    pub(crate) fn resize_to(&mut self, term: f64) {
+    /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work. `term`: as it is at the start
+    /// of the step, J.
+    fn resize_to(&mut self, term: f64) {
         let lost = self.balance.scheme_energy - term;
         self.dissipation.add(lost);
         self.resized.add(lost);
@@ -415,14 +322,11 @@ impl Ledger {
         self.work_contact.add(jump.work);
         self.beyond[4].add(jump.work_obstacles);
         self.dissipation.add(jump.dissipation);
-        for (k, impulse) in [1, 2, 4].into_iter().zip(&jump.impulses) {
-            for i in 0..3 {
-                self.impulses[k][i].add(impulse.linear[i]);
-                self.impulses[k][3 + i].add(impulse.angular[i]);
-            }
-        }
-        self.forces[1..3].copy_from_slice(&jump.forces);
-        self.forces[4] = self.forces[4].plus(&jump.links);
+        add(&mut self.impulses.contacts, &jump.impulses.contacts);
+        add(&mut self.impulses.supports, &jump.impulses.supports);
+        add(&mut self.impulses.links, &jump.impulses.links);
+        (self.forces.contacts, self.forces.supports) = (jump.contacts, jump.supports);
+        self.forces.links = self.forces.links.plus(&jump.links);
         self.close(energies, identity);
     }
 
@@ -486,13 +390,6 @@ impl Ledger {
     }
 
     fn closed(&self, energies: &Energies, identity: &EnergyIdentity) -> Balance {
-        let impulse = |k: usize| {
-            let sums: [f64; 6] = self.impulses[k].map(|sum| sum.get());
-            Resultant {
-                linear: [sums[0], sums[1], sums[2]],
-                angular: [sums[3], sums[4], sums[5]],
-            }
-        };
         let (work_loads, work_contact) = (self.work_loads.get(), self.work_contact.get());
         let work_links = self.work_links.get();
         let dissipation_scheme = self.dissipation.get();
@@ -517,9 +414,11 @@ impl Ledger {
             + dissipation_friction
             + dissipation_viscosity
             + self.deletion.get();
-        let [impulse_loads, impulse_contact] = [impulse(0), impulse(1)];
-        let impulse_supports = impulse(2).combine(1.0, &impulse(3), 1.0);
-        let impulse_links = impulse(4);
+        let impulses = &self.impulses;
+        let [impulse_loads, impulse_contact] = [&impulses.loads, &impulses.contacts].map(total);
+        let held = total(&impulses.held);
+        let impulse_supports = total(&impulses.supports).combine(1.0, &held, 1.0);
+        let impulse_links = total(&impulses.links);
         let impulses = impulse_loads
             .combine(1.0, &impulse_contact, 1.0)
             .combine(1.0, &impulse_supports, 1.0)
@@ -550,6 +449,23 @@ impl Ledger {
             impulse_supports,
             momentum_residual: change_of_momentum.combine(1.0, &impulses, -1.0),
         }
+    }
+}
+
+/// Adds to the sums of an impulse.
+fn add(sums: &mut [Sum; 6], impulse: &Resultant) {
+    for i in 0..3 {
+        sums[i].add(impulse.linear[i]);
+        sums[3 + i].add(impulse.angular[i]);
+    }
+}
+
+/// What an impulse has come to.
+fn total(sums: &[Sum; 6]) -> Resultant {
+    let [x, y, z, mx, my, mz] = sums.map(|sum| sum.get());
+    Resultant {
+        linear: [x, y, z],
+        angular: [mx, my, mz],
     }
 }
 

@@ -39,6 +39,8 @@ pub(crate) mod shapes;
 mod shared;
 mod small;
 pub mod state;
+mod step_forces;
+mod step_terms;
 mod sum;
 mod tolerated;
 mod update;

@@ -13,6 +13,7 @@ use crate::ledger::Ledger;
 use crate::records::Records;
 use crate::scheme::Scheme;
 use crate::shapes::Shapes;
+use crate::step_forces::StepForces;
 
 /// State at an accepted instant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -25,10 +26,9 @@ pub struct State {
     pub motion: Motion,
     /// Contact forces and statuses.
     pub interface: InterfaceState,
-    /// Nodal forces of the last step as its balance by works takes them, N: loads, contacts, supports, inertia, internal,
-    /// damping, links; empty where the next step does not need them. Of explicit steps in one pass those of links are taken from those of
-    /// damping.
-    pub forces: Vec<Vec<f64>>,
+    /// Nodal forces of the last step as its balance by works takes them, N; each empty where the next step does not need it. Of explicit steps in
+    /// one pass those of links are taken from those of damping.
+    pub forces: StepForces<Vec<f64>>,
     /// Links between velocities.
     pub links: Links,
     /// Step control.
@@ -222,6 +222,7 @@ impl State {
             && interface
             && self
                 .forces
+                .each()
                 .iter()
                 .all(|force| [0, n].contains(&force.len()))
             && self.links.are_of(system)
@@ -311,7 +312,7 @@ pub(crate) fn state_without_motion(system: &System) -> State {
             crush: vec![0.0; points],
             landed: vec![0.0; points],
         },
-        forces: Vec::new(),
+        forces: StepForces::default(),
         links: Links::default(),
         control: Control::start(system.dt),
         ledger: Ledger::default(),

@@ -185,7 +185,7 @@ impl System {
 
     /// Number of contact points over all contacts.
     pub fn points(&self) -> usize {
-        self.contacts[self.contacts.len()].range.start
+        self.contacts.last().map_or(0, |contact| contact.range.end)
     }
 
     /// Contact points of a contact in the arrays over all points.

@@ -4,20 +4,21 @@
 //! the kinetic energy, and internal forces beyond what is stored and dissipated by the material, is the scheme's share, of
 //! no fixed sign. The residual is the work of what the iterations left unbalanced.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use carom_contact::law::Level;
 
 use super::identity::{End, energies};
+use super::mean_forces::{MeanForces, Weighted};
 use super::reported;
 use super::scratch::Works;
 use super::{Driver, Which};
 use crate::error::Error;
-use crate::ledger::{Beyond, Energies, Squares};
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
+use crate::step_forces::{OutsideForces, StepForces};
 use crate::step_map::{Impulse, Row, StepMap};
+use crate::step_terms::{Beyond, Energies, StepTerms};
 use crate::tolerated::Tolerated;
 
 impl Driver {
@@ -234,7 +235,7 @@ impl Driver {
         let factor = self.contact_factor();
         let counted = self.identity.is_some().then(|| self.work_weights());
         let (old, new) = (&self.state.motion, &self.next.motion);
-        let (maps, zones) = (&self.maps, &system.spans);
+        let maps = &self.maps;
         let vectors = &mut self.vectors;
         let with_acceleration = identity.inertia != 0.0;
         let of = (self.stored.strain, with_acceleration, Some(&new.u[..]));
@@ -267,50 +268,43 @@ impl Driver {
         } = &mut works;
         given.clear();
         given.resize(system.parts.len(), 0.0);
-        let now = [
-            &vectors.load[..],
-            contact,
-            reaction,
-            &vectors.inertia,
-            &vectors.balanced,
-            &vectors.damping,
+        let now = StepForces {
+            load: &vectors.load[..],
+            contact: &contact[..],
+            reaction: &reaction[..],
+            inertia: &vectors.inertia[..],
+            internal: &vectors.balanced[..],
+            damping: &vectors.damping[..],
             link,
-            springs,
-        ];
+            spring: &springs[..],
+        };
         let before = &self.state.forces;
-        let way = |f: &[f64]| -> f64 { (0..f.len()).map(|i| f[i] * (new.u[i] - old.u[i])).sum() };
-        let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
-        let (mut of_way, mut resultants) = ([0.0; 8], [Resultant::default(); 8]);
-        for (k, now) in now.into_iter().enumerate() {
-            let weights = if k == 1 { &of_contact } else { &weights };
-            let before = before.get(k).map_or(&[][..], |f| &f[..]);
-            let force = mean_force([before, now], weights, zones, mean);
-            of_way[k] = way(force);
-            if matches!(k, 0 | 2) && !force.is_empty() {
-                for (given, part) in given.iter_mut().zip(&system.parts) {
-                    let unknowns = part.clone();
-                    *given += unknowns
-                        .map(|i| force[i] * (new.u[i] - old.u[i]))
-                        .sum::<f64>();
-                }
-            }
-            if !matches!(k, 3 | 4) {
-                resultants[k] = Resultant::at(&system, places, force);
-            }
-        }
-        let [
-            load,
-            touch,
-            support,
-            mut inertia,
-            internal,
-            damping,
-            links,
-            _,
-        ] = of_way;
+        let weighted = |before, now, weights| Weighted {
+            before,
+            now,
+            weights,
+        };
+        let mut means = MeanForces {
+            system: &system,
+            old,
+            new,
+            mean,
+        };
+        let (load, loads) = means.given(weighted(&before.load, now.load, &weights), given);
+        let of = weighted(&before.contact, now.contact, &of_contact);
+        let (touch, contacts) = means.work_and_resultant(of);
+        let of = weighted(&before.reaction, now.reaction, &weights);
+        let (support, reactions) = means.given(of, given);
+        let mut inertia = means.work(weighted(&before.inertia, now.inertia, &weights));
+        let internal = means.work(weighted(&before.internal, now.internal, &weights));
+        let of = weighted(&before.damping, now.damping, &weights);
+        let (damping, damped) = means.work_and_resultant(of);
+        let (links, linked) = means.work_and_resultant(weighted(&before.link, now.link, &weights));
+        let of = weighted(&before.spring, now.spring, &weights);
+        let (_, sprung) = means.work_and_resultant(of);
         if pushes {
             // the inertia of the push is the force that gives it
-            inertia += touch + way(held);
+            inertia += touch + means.work(weighted(&[], &held[..], &of_contact));
         }
         let start = &self.state.ledger.balance;
         // what supports that jump give is no inertia of the step
@@ -340,30 +334,26 @@ impl Driver {
             momentum: self.left_over * nodes.sqrt() * self.dt,
         };
         let apart = |i: usize| if pushes { held[i] } else { 0.0 };
-        let sprung = |i: usize| springs.get(i).unwrap_or(&0.0);
+        let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
         let at = (&old.frames[..], Some(&new.u[..]));
         reported::write(&mut self.reactions, &system, at, |i| {
-            reaction[i] + apart(i) - sprung(i)
+            reaction[i] + apart(i) - spring(i)
         });
-        let [loads, contacts, reactions, _, _, damped, linked, sprung] = resultants;
-        let forces = [
+        let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
+        let forces = OutsideForces {
             loads,
             contacts,
-            reactions.plus(&sprung.reversed()),
-            match pushes {
+            supports: reactions.plus(&sprung.reversed()),
+            held: match pushes {
                 true => Resultant::at(&system, places, held),
                 false => Resultant::default(),
             },
-            linked.plus(&damped.reversed()),
-        ];
+            links: linked.plus(&damped.reversed()),
+        };
         let go_on = weights.iter().any(|of| of[0] != 0.0) || maps.is_static();
-        match go_on {
-            true => self.next.forces.resize_with(now.len(), Vec::new),
-            false => self.next.forces.clear(),
-        }
-        for (kept, force) in self.next.forces.iter_mut().zip(now) {
+        for (kept, force) in self.next.forces.each_mut().into_iter().zip(now.each()) {
             kept.clear();
-            kept.extend_from_slice(force);
+            kept.extend_from_slice(if go_on { force } else { &[] });
         }
         if !maps.is_static() {
             let exchange = &mut self.next.exchange;
@@ -371,7 +361,6 @@ impl Driver {
             if let Some(impulses) = self.jump.impulses() {
                 exchange.jump(&system, impulses);
             }
-            let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
             let linked = |i: usize| link.get(i).unwrap_or(&0.0);
             let own =
                 |i: usize| vectors.load[i] + own[i] + linked(i) - vectors.damping[i] - spring(i);
@@ -381,44 +370,38 @@ impl Driver {
                 held[i]
             });
         }
-        self.next.ledger.clone_from(&self.state.ledger);
-        if identity != EnergyIdentity::default() {
-            // what it gains by a new size of the step alone
-            self.next.ledger.resize_to(own_before);
-        }
-        self.next.ledger.begin_step(maps.is_static());
-        self.next.ledger.kick(&self.jump.impulse);
-        self.next.ledger.go_beyond(&Beyond {
-            work_supports: support + self.jump.work,
-            work_obstacles: obstacles,
-            tolerated,
-            dissipation_material: self.stored.dissipated,
-            dissipation_damping: damping,
-            dissipation_friction: -friction,
-            dissipation_viscosity: self.stored.viscous,
-            hardening: self.stored.hardening,
-            hourglass: self.stored.hourglass,
-        });
-        let squares = Squares {
-            stage: scheme,
-            ..Squares::default()
-        };
         let one = Impulse::weights(0.0, 1.0);
-        let impulses = match plain || maps.is_static() {
+        let [impulse, contact_impulse] = match plain || maps.is_static() {
             true => [&one, &one],
             false => [&maps.first().impulse, &maps.first().contact_impulse],
         };
-        let dt = if maps.is_static() { 0.0 } else { self.dt };
-        self.next.ledger.add(
-            (dt, &identity, impulses),
-            &energies,
-            [load, work_contact - friction - obstacles, links],
-            &squares,
+        self.next.ledger = self.state.ledger.after(&StepTerms {
+            dt: if maps.is_static() { 0.0 } else { self.dt },
+            is_static: maps.is_static(),
+            identity: &identity,
+            impulse,
+            contact_impulse,
+            energies,
+            work_loads: load,
+            work_contacts: work_contact - friction - obstacles,
+            work_links: links,
+            dissipation: scheme,
+            energy_of_scheme: (identity != EnergyIdentity::default()).then_some(own_before),
             forces,
-        );
-        if maps.is_static() {
-            self.next.ledger.end_static_step();
-        }
+            kick: self.jump.impulse,
+            beyond: Some(Beyond {
+                work_supports: support + self.jump.work,
+                work_obstacles: obstacles,
+                tolerated,
+                dissipation_material: self.stored.dissipated,
+                dissipation_damping: damping,
+                dissipation_friction: -friction,
+                dissipation_viscosity: self.stored.viscous,
+                hardening: self.stored.hardening,
+                hourglass: self.stored.hourglass,
+            }),
+            rounding: Tolerated::default(),
+        });
         self.works = works;
     }
 
@@ -443,24 +426,4 @@ impl Driver {
         self.system.mass.multiply(&motion.a, work);
         carom_algebra::reduce::dot(&motion.a, work)
     }
-}
-
-/// Mean of a force over the step with the weights of each zone, N: the force of the step where that at the start has no weight or is not known.
-fn mean_force<'a>(
-    [before, now]: [&'a [f64]; 2],
-    weights: &[[f64; 2]],
-    zones: &[(Range<usize>, usize)],
-    mean: &'a mut Vec<f64>,
-) -> &'a [f64] {
-    let from_start = weights.iter().any(|of| of[0] != 0.0);
-    if !from_start || before.len() != now.len() {
-        return now;
-    }
-    mean.clear();
-    for (span, zone) in zones.iter().filter(|_| !now.is_empty()) {
-        let [old, new] = weights[*zone];
-        let forces = before[span.clone()].iter().zip(&now[span.clone()]);
-        mean.extend(forces.map(|(before, now)| old * before + new * now));
-    }
-    mean
 }

@@ -11,15 +11,16 @@ use carom_contact::Rows;
 use rayon::prelude::*;
 
 use super::Driver;
-use super::forces::{Bodies, DAMPING, add_up};
+use super::forces::{Bodies, add_up};
 use super::leapfrog::{Direct, is_leapfrog};
 use super::loads::damping_rate;
 use super::reported;
 use crate::assembly_energy::PartMotion;
 use crate::error::Error;
-use crate::ledger::{Beyond, Energies, Squares};
 use crate::resultant::Resultant;
+use crate::step_forces::OutsideForces;
 use crate::step_map::{Impulse, Known, Row};
+use crate::step_terms::{Beyond, Energies, Squares, StepTerms};
 use crate::tolerated::Tolerated;
 use crate::update::{Sums, Update};
 
@@ -319,10 +320,19 @@ impl Driver {
         let damped = self.has_forces_beside();
         let (old, new) = (&self.state.motion, &mut self.next.motion);
         let varying = &self.vectors.load[..];
-        let kept = self.state.forces.first().filter(|load| !load.is_empty());
-        let before = kept.map_or(varying, |load| &load[..]);
+        let known = |kept: &'_ [f64]| !kept.is_empty();
+        let kept = &self.state.forces;
+        let before = if known(&kept.load) {
+            &kept.load[..]
+        } else {
+            varying
+        };
         let damping = &self.vectors.damping[..];
-        let before_damping = self.state.forces.get(DAMPING).map_or(damping, |f| &f[..]);
+        let before_damping = if known(&kept.damping) {
+            &kept.damping[..]
+        } else {
+            damping
+        };
         let none = (&system.load[..], 0.0);
         let update = Update {
             system: &system,
@@ -348,18 +358,13 @@ impl Driver {
         let out = [&mut direct.ahead[..], &mut new.v, &mut new.a];
         update.run(&direct.blocks, &mut direct.sums, out);
         direct.pending = Some(map.displacement);
-        let kept = match loads {
-            _ if damped => DAMPING + 1,
-            Loads::Varying => 1,
-            Loads::None | Loads::Dead(_) => 0,
-        };
         let forces = &mut self.next.forces;
-        forces.resize_with(kept, Vec::new);
-        if let (Loads::Varying, [load, ..]) = (loads, &mut forces[..]) {
-            load.clone_from(&self.vectors.load);
+        forces.each_mut().into_iter().for_each(Vec::clear);
+        if let Loads::Varying = loads {
+            forces.load.extend_from_slice(&self.vectors.load);
         }
-        if let Some(kept) = forces.get_mut(DAMPING) {
-            kept.clone_from(&self.vectors.damping);
+        if damped {
+            forces.damping.extend_from_slice(&self.vectors.damping);
         }
     }
 
@@ -419,19 +424,21 @@ impl Driver {
         let start = &self.state.ledger.balance;
         let gained = energies.kinetic - start.kinetic + energies.of_scheme(&identity) - before;
         let kept = energies.strain - start.strain + stored.hardening - start.hardening;
-        let ledger = &mut self.next.ledger;
-        ledger.clone_from(&self.state.ledger);
-        ledger.resize_to(before);
-        let (mut squares, one) = (Squares::default(), Impulse::weights(0.0, 1.0));
+        let one = Impulse::weights(0.0, 1.0);
         // forces that are means already, or those of the end
-        let mut impulses = [&map.impulse, &map.contact_impulse];
+        let [impulse, contact_impulse] = match system.is_nonlinear() {
+            true => [&one, &one],
+            false => [&map.impulse, &map.contact_impulse],
+        };
+        let mut dissipation = Squares::default().dissipation(&identity);
+        let mut beyond = None;
         if system.is_nonlinear() {
-            impulses = [&one, &one];
-            squares.stage = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
+            dissipation = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
             self.left_over =
                 self.system.nonlinear.iteration.tolerance * scale(sums, self.dt).max(link_norm);
             let nodes = system.nodes_of_whole as f64;
-            ledger.go_beyond(&Beyond {
+            beyond = Some(Beyond {
+                work_supports: 0.0,
                 work_obstacles: obstacles,
                 dissipation_material: stored.dissipated,
                 // what is beside internal forces is damping less the forces of links
@@ -444,18 +451,32 @@ impl Driver {
                     energy: self.left_over * sums.way.sqrt(),
                     momentum: self.left_over * nodes.sqrt() * self.dt,
                 },
-                ..Beyond::default()
             });
         }
         let [loads, contacts, supports, beside] = sums.forces;
-        let none = Resultant::default();
-        ledger.add(
-            (self.dt, &identity, impulses),
-            &energies,
-            [load, touch - friction - obstacles, links],
-            &squares,
-            [loads, contacts, supports, none, beside.reversed()],
-        );
+        self.next.ledger = self.state.ledger.after(&StepTerms {
+            dt: self.dt,
+            is_static: false,
+            identity: &identity,
+            impulse,
+            contact_impulse,
+            energies,
+            work_loads: load,
+            work_contacts: touch - friction - obstacles,
+            work_links: links,
+            dissipation,
+            energy_of_scheme: Some(before),
+            forces: OutsideForces {
+                loads,
+                contacts,
+                supports,
+                held: Resultant::default(),
+                links: beside.reversed(),
+            },
+            kick: Resultant::default(),
+            beyond,
+            rounding: Tolerated::default(),
+        });
         let exchange = &mut self.next.exchange;
         exchange.follow(&self.state.exchange);
         let apart = system.is_nonlinear();

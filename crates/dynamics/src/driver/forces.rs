@@ -51,9 +51,6 @@ pub(super) fn add_up(
     Ok(sum)
 }
 
-/// Place of the forces of damping among those of a state ([`State::forces`](crate::State::forces)).
-pub(super) const DAMPING: usize = 5;
-
 impl Driver {
     /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
     pub(super) fn evaluate_loads_of_step(&mut self) {

@@ -8,10 +8,12 @@ use carom_bodies::Body;
 
 use super::Driver;
 use super::reported;
-use crate::ledger::{Energies, Squares, reactions};
+use crate::ledger::reactions;
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
+use crate::step_forces::OutsideForces;
 use crate::step_map::Impulse;
+use crate::step_terms::{Energies, Squares, StepTerms};
 use crate::system::{Motion, System};
 
 /// How contact forces work in the energy balance.
@@ -163,33 +165,33 @@ impl Driver {
             }
         };
         let rounding = self.rounding_of_step();
-        self.next.ledger.clone_from(&self.state.ledger);
-        self.next.ledger.rounding.add(&rounding);
-        self.resize_energy();
-        self.next.ledger.add(
-            (
-                self.dt,
-                &identity,
-                [
-                    &self.maps.first().impulse,
-                    &self.maps.first().contact_impulse,
-                ],
-            ),
-            &energies,
-            [work_loads, work_contact, work_links],
-            &squares,
-            [loads, contact, supports, held, links],
-        );
-    }
-
-    /// Counts what the energy that the scheme balances gains by the new size of the step alone.
-    fn resize_energy(&mut self) {
-        if self.dt == self.state.control.taken {
-            return;
-        }
-        let identity = self.identity.unwrap_or_default();
-        let energies = self.energies_at_the_start(self.state.ledger.balance.strain);
-        self.next.ledger.resize(&identity, &energies);
+        let energy_of_scheme = (self.dt != self.state.control.taken).then(|| {
+            let at_the_start = self.energies_at_the_start(self.state.ledger.balance.strain);
+            at_the_start.of_scheme(&identity)
+        });
+        self.next.ledger = self.state.ledger.after(&StepTerms {
+            dt: self.dt,
+            is_static: false,
+            identity: &identity,
+            impulse: &self.maps.first().impulse,
+            contact_impulse: &self.maps.first().contact_impulse,
+            energies,
+            work_loads,
+            work_contacts: work_contact,
+            work_links,
+            dissipation: squares.dissipation(&identity),
+            energy_of_scheme,
+            forces: OutsideForces {
+                loads,
+                contacts: contact,
+                supports,
+                held,
+                links,
+            },
+            kick: Resultant::default(),
+            beyond: None,
+            rounding,
+        });
     }
 
     /// |Δm|²_K of the step, as far as the identity asks for it.

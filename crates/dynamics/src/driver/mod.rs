@@ -51,6 +51,7 @@ mod links;
 pub(crate) mod loads;
 mod manner;
 mod matrices;
+mod mean_forces;
 mod mixing;
 mod near;
 mod obstacles;

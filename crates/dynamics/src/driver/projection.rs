@@ -19,8 +19,10 @@ use super::linking::add_all_forces;
 use super::scratch::Projected;
 use super::{Driver, Vectors};
 use crate::error::Error;
-use crate::ledger::{Jump, reactions};
+use crate::ledger::reactions;
 use crate::resultant::Resultant;
+use crate::step_forces::OutsideForces;
+use crate::step_terms::Jump;
 
 impl Driver {
     /// Projects the end of the step if points of laws with projection have closed in it.
@@ -89,15 +91,16 @@ impl Driver {
             let own =
                 |i: usize| work[i] + held(i) + load[i] + new.link_of(i) - damping[i] - spring(i);
             self.next.exchange.renew(&system, own);
-            if let [_, contact, reaction, of_inertia, _, _, link, ..] = &mut self.next.forces[..] {
+            let kept = &mut self.next.forces;
+            if !kept.reaction.is_empty() {
                 if !new.link_force.is_empty() {
-                    link.copy_from_slice(&new.link_force);
+                    kept.link.copy_from_slice(&new.link_force);
                 }
-                for (f, p) in contact.iter_mut().zip(&new.contact_force) {
+                for (f, p) in kept.contact.iter_mut().zip(&new.contact_force) {
                     *f = factor * p;
                 }
-                reaction.copy_from_slice(work);
-                of_inertia.copy_from_slice(inertia);
+                kept.reaction.copy_from_slice(work);
+                kept.inertia.copy_from_slice(inertia);
             }
             for (reaction, spring) in work.iter_mut().zip(&springs) {
                 *reaction -= spring;
@@ -111,10 +114,8 @@ impl Driver {
             self.next.exchange.renew(&system, own);
         }
         let (new, work) = (&self.next.motion, &self.vectors.work);
-        jump.forces = [
-            Resultant::of(&system, &new.contact_force),
-            Resultant::of(&system, work),
-        ];
+        jump.contacts = Resultant::of(&system, &new.contact_force);
+        jump.supports = Resultant::of(&system, work);
         let half = &mut self.vectors.half;
         half.fill(0.0);
         add_all_forces(&system, &self.projected.links, half);
@@ -138,7 +139,7 @@ impl Driver {
     }
 
     /// Projects the velocity; impulses on the momentum from contacts, supports and links.
-    fn project_velocity(&mut self) -> Result<[Resultant; 3], Error> {
+    fn project_velocity(&mut self) -> Result<OutsideForces<Resultant>, Error> {
         let weights = self.maps.first().contact_impulse;
         let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
         let rows = &self.pairing.rows;
@@ -158,10 +159,10 @@ impl Driver {
 
     /// Adds what the impulses of the stage change in the velocity, from the rates in `values`; impulses on the momentum from
     /// contacts, supports and links.
-    pub(super) fn jump_velocity(&mut self) -> [Resultant; 3] {
+    pub(super) fn jump_velocity(&mut self) -> OutsideForces<Resultant> {
         let system = Arc::clone(&self.system);
         let Some(stage) = &self.impulses else {
-            return [Resultant::default(); 3];
+            return OutsideForces::default();
         };
         let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
         for (v, change) in motion.v.iter_mut().zip(&stage.change) {
@@ -201,7 +202,12 @@ impl Driver {
             *own += *link;
         }
         self.next.exchange.jump(&system, work);
-        [contact, supports, links]
+        OutsideForces {
+            contacts: contact,
+            supports,
+            links,
+            ..OutsideForces::default()
+        }
     }
 
     /// Projects the acceleration and the force that the next step begins with; change of |a|²_M.

@@ -7,7 +7,7 @@ use carom_contact::law::Status;
 
 use super::Driver;
 use super::scratch::Projected;
-use crate::ledger::Jump;
+use crate::step_terms::Jump;
 
 impl Driver {
     /// Gives the velocity back what the contact took, if the scheme does so.

@@ -13,7 +13,6 @@ use super::closings::Closings;
 use super::effective::Effective;
 use super::far::Far;
 use super::floating::Floating;
-use super::forces::DAMPING;
 use super::identity::{End, energies};
 use super::impulse::Impulses;
 use super::leapfrog::Direct;
@@ -35,13 +34,15 @@ use crate::coulomb::Coulomb;
 use crate::error::Error;
 use crate::exchange::Exchange;
 use crate::interface::Interface;
-use crate::ledger::{Energies, Ledger, reactions};
+use crate::ledger::{Ledger, reactions};
 use crate::operator::Operators;
 use crate::records::Records;
 use crate::report::{ContactReport, Notices, StepReport};
 use crate::resultant::Resultant;
 use crate::shapes::Rates;
 use crate::state::{Links, State, empty_state, state_without_motion};
+use crate::step_forces::{OutsideForces, StepForces};
+use crate::step_terms::Energies;
 use crate::system::{Maps, System};
 use crate::watch::Watch;
 use carom_system::ContactPair;
@@ -345,12 +346,15 @@ impl Driver {
             }
             false => Vec::new(),
         };
-        let forces = &mut self.state.forces;
-        forces.truncate(usize::from(!self.system.nonlinear.loads.is_empty()));
-        if !beside.is_empty() {
-            forces.resize_with(DAMPING, Vec::new);
-            forces.push(beside);
+        let mut load = std::mem::take(&mut self.state.forces.load);
+        if self.system.nonlinear.loads.is_empty() {
+            load.clear();
         }
+        self.state.forces = StepForces {
+            load,
+            damping: beside,
+            ..StepForces::default()
+        };
         self.vectors.give_up_room();
     }
 
@@ -387,7 +391,13 @@ impl Driver {
         let loads = Resultant::of(&system, &system.load);
         let link = Resultant::of(&system, &self.state.motion.link_force);
         let contact = Resultant::of(&system, &self.state.motion.contact_force);
-        let forces = [loads, contact, supports, held, link];
+        let forces = OutsideForces {
+            loads,
+            contacts: contact,
+            supports,
+            held,
+            links: link,
+        };
         let identity = self.identity.unwrap_or_default();
         self.state.ledger = Ledger::start(&energies, &identity, forces);
     }
@@ -410,24 +420,25 @@ impl Driver {
             lagged,
             ..of_motion.of_zones(&self.maps, &system, motion)
         };
-        let at = |k: usize| match self.state.forces.get(k) {
-            Some(f) => Resultant::at(&system, (&motion.frames, &[&motion.u]), f),
-            None => Resultant::default(),
+        let kept = &self.state.forces;
+        let at = |force: &[f64]| match kept.is_empty() {
+            true => Resultant::default(),
+            false => Resultant::at(&system, (&motion.frames, &[&motion.u]), force),
         };
-        let forces = [
-            at(0),
-            at(1),
-            at(2).plus(&at(7).reversed()),
-            Resultant::default(),
-            at(6).plus(&at(5).reversed()),
-        ];
+        let forces = OutsideForces {
+            loads: at(&kept.load),
+            contacts: at(&kept.contact),
+            supports: at(&kept.reaction).plus(&at(&kept.spring).reversed()),
+            held: Resultant::default(),
+            links: at(&kept.link).plus(&at(&kept.damping).reversed()),
+        };
         self.state.ledger = Ledger::start(&energies, &identity, forces);
         self.state.ledger.store(hardening);
     }
 
     /// Forces that a step with a balance at both of its ends begins with, those of `springs` (N) also by themselves: none where a static stage begins out of balance.
     fn forces_at_the_start(&mut self, springs: Vec<f64>) {
-        self.state.forces.clear();
+        self.state.forces = StepForces::default();
         let system = &*self.system;
         let of_end = self.maps.all().iter().all(|map| map.impulse.old == 0.0);
         if of_end && !self.is_static() {
@@ -462,16 +473,16 @@ impl Driver {
             true => (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
             false => Vec::new(),
         };
-        self.state.forces = vec![
-            load.clone(),
-            motion.contact_force.clone(),
+        self.state.forces = StepForces {
+            load: load.clone(),
+            contact: motion.contact_force.clone(),
             reaction,
             inertia,
             internal,
             damping,
-            links,
-            springs,
-        ];
+            link: links,
+            spring: springs,
+        };
     }
 
     /// The exchange of momentum begins with the dynamics.
@@ -483,11 +494,15 @@ impl Driver {
         let system = &*self.system;
         let work = &mut self.vectors.work;
         system.mass.multiply(&self.state.motion.v, work);
-        let forces = &self.state.forces;
-        let of = |k: usize, i: usize| forces.get(k).and_then(|f| f.get(i)).unwrap_or(&0.0);
-        let held = |i: usize| if system.fixed[i] { *of(1, i) } else { 0.0 };
+        let f = &self.state.forces;
+        let of = |force: &[f64], i: usize| force.get(i).copied().unwrap_or(0.0);
+        let held = |i: usize| match system.fixed[i] {
+            true => of(&f.contact, i),
+            false => 0.0,
+        };
+        let outside = |i: usize| of(&f.load, i) + of(&f.reaction, i) + held(i) + of(&f.link, i);
         let own: Vec<f64> = (0..system.unknowns())
-            .map(|i| of(0, i) + of(2, i) + held(i) + of(6, i) - of(5, i) - of(7, i))
+            .map(|i| outside(i) - of(&f.damping, i) - of(&f.spring, i))
             .collect();
         let held: Vec<f64> = (0..system.unknowns()).map(|i| -held(i)).collect();
         self.state.exchange = Exchange::start(system, work, [&own, &held]);

@@ -80,7 +80,7 @@ impl WeakForms {
     ) {
         for (k, form) in self.forms.iter_mut().enumerate() {
             let Some(form) = form else { continue };
-            let range = system.contacts[k].range.start..system.contacts[k + 1].range.start;
+            let range = system.points_of(k);
             let of_contact = points
                 .clone()
                 .filter(|(point, _)| range.contains(point))
@@ -163,10 +163,10 @@ impl WithWeak {
             Level::Gap => factors[0],
             Level::Rate | Level::GapAndRate => factors[1],
         };
-        let ends = [contact, contact + 1].map(|k| {
-            candidates.partition_point(|&point| (point as usize) < system.contacts[k].range.start)
-        });
-        let place = |k: usize| candidates[k] as usize - system.contacts[contact].range.start;
+        let range = &system.contacts[contact].range;
+        let ends = [range.start, range.end]
+            .map(|end| candidates.partition_point(|&point| (point as usize) < end));
+        let place = |k: usize| candidates[k] as usize - range.start;
         for i in ends[0]..ends[1] {
             for j in ends[0]..=i {
                 let entry = form.weak.compliance(place(i), place(j)) / factor;

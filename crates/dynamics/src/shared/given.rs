@@ -7,6 +7,7 @@ use carom_ranks::{Message, Ranks};
 use super::begin::Begin;
 use crate::error::Error;
 use crate::state::State;
+use crate::step_forces::StepForces;
 use crate::system::{Kept, Motion, System};
 
 impl Begin {
@@ -87,7 +88,7 @@ struct Arrays {
     /// Displacement, velocity, acceleration, internal and contact force.
     motion: [Vec<f64>; 5],
     history: Vec<f64>,
-    forces: Vec<Vec<f64>>,
+    forces: StepForces<Vec<f64>>,
     looks: Vec<Looks>,
     /// Of each body whether anything is known of the frequencies of its elements.
     looked: Vec<bool>,
@@ -130,23 +131,27 @@ impl Arrays {
         state.shapes.looks = self.looks;
     }
 
-    /// How many forces there are, whether each has entries, and of which bodies there are looks.
+    /// Whether each of the forces has entries, and of which bodies there are looks.
     fn sizes(&self) -> Vec<f64> {
-        let forces = self.forces.iter().map(|force| !force.is_empty());
-        let flags = forces.chain(self.looked.iter().copied()).map(f64::from);
-        let count = std::iter::once(self.forces.len() as f64);
-        count.chain(flags).collect()
+        let forces = self.forces.each().map(|force| !force.is_empty());
+        let flags = forces.into_iter().chain(self.looked.iter().copied());
+        flags.map(f64::from).collect()
     }
 
     /// Room for those of a part of the system.
     fn of_sizes(system: &System, sizes: &[f64]) -> Arrays {
-        let (forces, looked) = sizes[1..].split_at(sizes[0] as usize);
+        let mut forces = StepForces::default();
+        let (has, looked) = sizes.split_at(forces.each().len());
         let vector = || vec![0.0; system.unknowns()];
-        let force = |has: &f64| if *has == 0.0 { Vec::new() } else { vector() };
+        for (force, has) in forces.each_mut().into_iter().zip(has) {
+            if *has != 0.0 {
+                *force = vector();
+            }
+        }
         Arrays {
             motion: [0; 5].map(|_| vector()),
             history: system.start_histories(),
-            forces: forces.iter().map(force).collect(),
+            forces,
             looks: vec![Looks::default(); looked.len()],
             looked: looked.iter().map(|has| *has != 0.0).collect(),
         }
@@ -155,7 +160,7 @@ impl Arrays {
     /// Visits the numbers of some nodes and elements, but for what is known of frequencies.
     fn each(&mut self, system: &System, of: &Kept, visit: &mut dyn FnMut(&mut f64)) {
         let dim = system.dim;
-        let vectors = self.motion.iter_mut().chain(&mut self.forces);
+        let vectors = self.motion.iter_mut().chain(self.forces.each_mut());
         for vector in vectors.filter(|vector| !vector.is_empty()) {
             for &node in &of.nodes {
                 let entries = &mut vector[dim * node as usize..][..dim];

@@ -310,7 +310,7 @@ fn steps_in_one_pass_are_those_of_the_iterations() {
             // multipliers round as the forces that they hold, their works as the kinetic energy
             let norm = |forces: &[f64]| forces.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
             let forces = [&b.motion.internal_force, &b.links.multipliers];
-            let forces = forces.into_iter().chain(&b.forces);
+            let forces = forces.into_iter().chain(b.forces.each());
             let force = forces.map(|forces| norm(forces)).fold(0.0, f64::max);
             let both = a.links.multipliers.iter().zip(&b.links.multipliers);
             for (a, b) in both {

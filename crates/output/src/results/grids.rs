@@ -380,8 +380,7 @@ impl SurfaceGrid {
         snapshot: &Snapshot,
     ) -> Result<(), Error> {
         let contact = &system.contacts[self.contact];
-        let range = system.contacts[self.contact].range.start
-            ..system.contacts[self.contact + 1].range.start;
+        let range = system.points_of(self.contact);
         let interface = &snapshot.interface;
         let (force, status) = (
             &interface.force[range.clone()],

@@ -290,13 +290,11 @@ impl Results {
             false => self.keep(run),
         };
         let forces = |k: usize| {
-            let points =
-                self.system.contacts[k].range.start..self.system.contacts[k + 1].range.start;
+            let points = self.system.points_of(k);
             state.interface.force[points].iter().any(|f| *f != 0.0)
         };
         let crush = |k: usize| {
-            let points =
-                self.system.contacts[k].range.start..self.system.contacts[k + 1].range.start;
+            let points = self.system.points_of(k);
             let law = &self.system.contacts[k].law;
             let own = state.interface.crush[points]
                 .iter()
