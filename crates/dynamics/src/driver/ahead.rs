@@ -8,29 +8,31 @@ impl Driver {
     /// before.
     pub(super) fn look_ahead(&mut self) -> Result<(), Error> {
         self.renew()?;
-        (self.pace.age, self.pace.made) = (1, 0);
-        let motion = &self.state.motion;
-        let vectors = &mut self.vectors;
-        let residual = match self.link_force.is_empty() {
+        (self.parts.pace.age, self.parts.pace.made) = (1, 0);
+        let motion = &self.attempt.state.motion;
+        let vectors = &mut self.attempt.vectors;
+        let residual = match self.links.force.is_empty() {
             true => &vectors.residual,
             false => &vectors.unlinked,
         };
         for (i, r) in vectors.work.iter_mut().enumerate() {
             let link = motion.link_force.get(i).unwrap_or(&0.0);
-            *r = match self.system.fixed[i] {
+            *r = match self.attempt.system.fixed[i] {
                 true => 0.0,
-                false => residual[i] + self.maps.contact() * motion.contact_force[i] + link,
+                false => residual[i] + self.attempt.maps.contact() * motion.contact_force[i] + link,
             };
         }
         self.free_motion()?;
-        let vectors = &mut self.vectors;
+        let vectors = &mut self.attempt.vectors;
         for (dx, x) in vectors.dx.iter_mut().zip(&vectors.x) {
             *dx += x;
         }
         vectors.ahead.resize(vectors.x.len(), 0.0);
-        let (motion, xc) = (&self.state.motion, [&vectors.dx[..], &vectors.push]);
+        let (motion, xc) = (&self.attempt.state.motion, [&vectors.dx[..], &vectors.push]);
         let ahead = &mut vectors.ahead;
-        self.maps.whole(|map| map.displacement, motion, xc, ahead);
+        self.attempt
+            .maps
+            .whole(|map| map.displacement, motion, xc, ahead);
         Ok(())
     }
 }

@@ -22,6 +22,7 @@ use carom_contact::Target;
 
 use super::Driver;
 use super::floating::body_of;
+use super::owners::{Attempt, Contacts, Parts};
 use super::rigid::{INDEPENDENT, Rigid, Span, norm};
 use crate::coulomb::Slip;
 use crate::error::Error;
@@ -46,67 +47,78 @@ impl Driver {
     /// # Errors
     /// No contact on the way; forces that cannot be taken where it ends.
     pub(super) fn approach(&mut self, scale: f64) -> Result<bool, Error> {
-        let (system, pieces) = (Arc::clone(&self.system), Arc::clone(&self.floating.pieces));
+        let (system, pieces) = (
+            Arc::clone(&self.attempt.system),
+            Arc::clone(&self.parts.floating.pieces),
+        );
         let rigid = Rigid::new(
             &system,
             &pieces,
-            (&self.places(), Some(&self.state.motion.frames)),
+            (
+                &self.attempt.places(),
+                Some(&self.attempt.state.motion.frames),
+            ),
         );
         let Some(c) = self.certain_load(&rigid, scale) else {
             return match self.tips(&rigid) {
-                true => Err(self.unheld(&rigid, &self.floating.carried)),
+                true => Err(self.attempt.unheld(&rigid, &self.parts.floating.carried)),
                 false => Ok(false),
             };
         };
-        let Some(way) = self.way_to_contact(&rigid, &c) else {
-            return Err(self.unheld(&rigid, &c));
+        let Some(way) = self.contacts.way_to_contact(&self.attempt, &rigid, &c) else {
+            return Err(self.attempt.unheld(&rigid, &c));
         };
         let way = way.min(TURN / rigid.turn(&c).max(f64::MIN_POSITIVE));
-        if way * norm(&c) <= 100.0 * self.system.tolerance {
+        if way * norm(&c) <= 100.0 * self.attempt.system.tolerance {
             return Ok(false);
         }
         let motion: Vec<f64> = c.iter().map(|c| way * c).collect();
         for (i, u) in rigid.motion(&motion).chain(rigid.arc(&motion)) {
             if !system.fixed[i] {
-                self.vectors.x[i] += u;
+                self.attempt.vectors.x[i] += u;
             }
         }
-        self.floating.load.clear();
+        self.parts.floating.load.clear();
         self.evaluate(false)?;
-        self.pair(false);
+        self.contacts.pair(&mut self.attempt, false);
         Ok(true)
     }
 
     /// Loads along rigid motions that nothing holds, as far as they are more than the iteration's; none within the tolerance.
     fn certain_load(&mut self, rigid: &Rigid, scale: f64) -> Option<Vec<f64>> {
         let mut c = self.unheld_load(rigid);
-        let before = std::mem::replace(&mut self.floating.load, c.clone());
+        let before = std::mem::replace(&mut self.parts.floating.load, c.clone());
         let change = before.iter().zip(&c).map(|(before, c)| c - before);
         let change: Vec<f64> = change.collect();
         let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
         let grounded = self.grounded();
         if !grounded.is_empty() {
-            self.floating.carried.clone_from(&c);
+            self.parts.floating.carried.clone_from(&c);
         }
         if !steady {
             for piece in grounded {
                 c[rigid.coordinates(piece)].fill(0.0);
             }
         }
-        let least = (self.system.nonlinear.iteration.tolerance * scale).max(self.rounding());
+        let least = (self.attempt.system.nonlinear.iteration.tolerance * scale)
+            .max(self.parts.rounding(&self.attempt));
         (norm(&c) > least).then_some(c)
     }
 
     /// Whether contact carries a piece that has gone on, for as many iterations as may be taken, along a motion with no contact on
     /// its way, and its load has not become less than half.
     fn tips(&mut self, rigid: &Rigid) -> bool {
-        let load = norm(&self.floating.load);
-        let carried = self.floating.load == self.floating.carried && load > self.left_over;
+        let load = norm(&self.parts.floating.load);
+        let carried =
+            self.parts.floating.load == self.parts.floating.carried && load > self.parts.left_over;
         if !carried {
             return false;
         }
-        let free = self.way_to_contact(rigid, &self.floating.load).is_none();
-        let floating = &mut self.floating;
+        let free = self
+            .contacts
+            .way_to_contact(&self.attempt, rigid, &self.parts.floating.load)
+            .is_none();
+        let floating = &mut self.parts.floating;
         if !free || load < 0.5 * floating.tipped {
             (floating.tipping, floating.tipped) = (0, 0.0);
             return false;
@@ -115,18 +127,21 @@ impl Driver {
             floating.tipped = load;
         }
         floating.tipping += 1;
-        floating.tipping >= self.system.nonlinear.iteration.passes
+        floating.tipping >= self.attempt.system.nonlinear.iteration.passes
     }
 
     /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that and
     /// no contact carries the piece, or comes to.
     pub(super) fn unbalanced(&self, passes: usize, imbalance: f64) -> Error {
-        let system = &*self.system;
-        if self.floats() {
+        let system = &*self.attempt.system;
+        if self.parts.floats(&self.attempt) {
             let rigid = Rigid::new(
                 system,
-                &self.floating.pieces,
-                (&self.places(), Some(&self.state.motion.frames)),
+                &self.parts.floating.pieces,
+                (
+                    &self.attempt.places(),
+                    Some(&self.attempt.state.motion.frames),
+                ),
             );
             let c = self.unheld_load(&rigid);
             let mut loose = c.clone();
@@ -135,46 +150,26 @@ impl Driver {
             }
             let free = || {
                 let most = norm(&c) > 0.5 * imbalance;
-                most && self.way_to_contact(&rigid, &c).is_none()
+                most && self
+                    .contacts
+                    .way_to_contact(&self.attempt, &rigid, &c)
+                    .is_none()
             };
-            if norm(&loose) > self.left_over || free() {
+            if norm(&loose) > self.parts.left_over || free() {
                 // what fell off is named by how it left its contact
-                return match self.floating.carried.is_empty() {
-                    true => self.unheld(&rigid, &c),
-                    false => self.unheld(&rigid, &self.floating.carried),
+                return match self.parts.floating.carried.is_empty() {
+                    true => self.attempt.unheld(&rigid, &c),
+                    false => self.attempt.unheld(&rigid, &self.parts.floating.carried),
                 };
             }
         }
         self.no_equilibrium(passes)
     }
 
-    fn unheld(&self, rigid: &Rigid, c: &[f64]) -> Error {
-        let (piece, motion) = rigid.name(c);
-        Error::Unheld {
-            step: self.state.step + 1,
-            time: self.state.time + self.dt,
-            body: body_of(&self.system, piece),
-            motion: motion.to_string(),
-        }
-    }
-
-    /// Displacement of the nodes at the x of the iteration, m.
-    fn places(&self) -> Vec<f64> {
-        let mut places = vec![0.0; self.vectors.x.len()];
-        let (motion, x) = (&self.state.motion, &self.vectors.x);
-        self.maps.whole(
-            |map| map.displacement,
-            motion,
-            [x, &self.vectors.push],
-            &mut places,
-        );
-        places
-    }
-
     /// Loads and contact forces along the rigid motions, less what is held: internal forces have no resultant, and those of springs are held.
     fn unheld_load(&self, rigid: &Rigid) -> Vec<f64> {
-        let vectors = &self.vectors;
-        let left = (0..vectors.x.len()).filter(|&i| !self.system.fixed[i]);
+        let vectors = &self.attempt.vectors;
+        let left = (0..vectors.x.len()).filter(|&i| !self.attempt.system.fixed[i]);
         let mut c = rigid.of(left.map(|i| (i, vectors.residual[i] + vectors.contact[i])));
         self.held(rigid).take_from(&mut c);
         c
@@ -182,13 +177,13 @@ impl Driver {
 
     /// Pieces that hang together by contact forces with something that does not float.
     fn grounded(&self) -> Vec<usize> {
-        let pieces = &*self.floating.pieces;
+        let pieces = &*self.parts.floating.pieces;
         let count = pieces.len();
         // one set more: all that does not float
         let mut set: Vec<usize> = (0..=count).collect();
-        for point in self.carrying() {
-            let (contact, _) = self.system.point(point);
-            let (unknowns, _) = self.pairing.rows.row(point);
+        for point in self.attempt.carrying() {
+            let (contact, _) = self.attempt.system.point(point);
+            let (unknowns, _) = self.contacts.pairing.rows.row(point);
             let touched = unknowns
                 .iter()
                 .map(|&i| pieces.of(i as usize).unwrap_or(count));
@@ -212,16 +207,19 @@ impl Driver {
     /// surfaces; whether it was longer. Contacts that carry forces, and the forces inside, know nothing of these motions.
     pub(super) fn restrain(&mut self) -> bool {
         let mut shortened = false;
-        let system = Arc::clone(&self.system);
-        let pieces = Arc::clone(&self.floating.pieces);
+        let system = Arc::clone(&self.attempt.system);
+        let pieces = Arc::clone(&self.parts.floating.pieces);
         let rigid = Rigid::new(
             &system,
             &pieces,
-            (&self.places(), Some(&self.state.motion.frames)),
+            (
+                &self.attempt.places(),
+                Some(&self.attempt.state.motion.frames),
+            ),
         );
-        let mut c = rigid.nearest(&self.vectors.dx);
+        let mut c = rigid.nearest(&self.attempt.vectors.dx);
         self.held(&rigid).take_from(&mut c);
-        for (piece, size) in self.floating.sizes.iter().enumerate() {
+        for (piece, size) in self.parts.floating.sizes.iter().enumerate() {
             let reach = rigid.reach(piece, &c);
             let beyond = (1.0 - REACH * size / reach.max(f64::MIN_POSITIVE)).max(0.0);
             shortened |= beyond > 0.0;
@@ -231,55 +229,35 @@ impl Driver {
         }
         for (i, u) in rigid.motion(&c) {
             if !system.fixed[i] {
-                self.vectors.dx[i] -= u;
+                self.attempt.vectors.dx[i] -= u;
             }
         }
         shortened
     }
 
-    /// Adds to x what finite turns of the pieces have beyond the linear motion `share` dx from `before`.
-    pub(super) fn turn(&mut self, share: f64) {
-        let system = Arc::clone(&self.system);
-        let mut places = vec![0.0; self.vectors.x.len()];
-        let motion = &self.state.motion;
-        self.maps.whole(
-            |map| map.displacement,
-            motion,
-            [&self.vectors.before, &self.vectors.push],
-            &mut places,
-        );
-        let pieces = Arc::clone(&self.floating.pieces);
-        let rigid = Rigid::new(&system, &pieces, (&places, Some(&self.state.motion.frames)));
-        let mut c = rigid.nearest(&self.vectors.dx);
-        c.iter_mut().for_each(|c| *c *= share);
-        for (i, u) in rigid.arc(&c) {
-            self.vectors.x[i] += u;
-        }
-    }
-
     /// What supports, springs, constraints and contacts that carry a force hold of the rigid motions.
     fn held(&self, rigid: &Rigid) -> Span {
         let mut held = Span::default();
-        for i in self.floating.pieces.unknowns() {
-            if self.system.fixed[i] {
+        for i in self.parts.floating.pieces.unknowns() {
+            if self.attempt.system.fixed[i] {
                 held.add(rigid.of([(i, 1.0)]));
             }
         }
         for row in rigid.held_inside() {
             held.add(row);
         }
-        for body in &self.system.bodies {
+        for body in &self.attempt.system.bodies {
             body.each_spring(&mut |row| {
                 held.add(rigid.row(row.iter().copied()));
             });
         }
-        for row in self.rows.iter() {
+        for row in self.links.rows.iter() {
             held.add(rigid.row(row.iter().map(|&(i, c)| (i as usize, c))));
         }
-        let tangents = &self.pairing.tangents[..self.system.tangents()];
-        for point in self.carrying() {
-            held.add(rigid.contact_row(&self.pairing.rows, point));
-            if self.slips.get(point) == Some(&Slip::Stick) {
+        let tangents = &self.contacts.pairing.tangents[..self.attempt.system.tangents()];
+        for point in self.attempt.carrying() {
+            held.add(rigid.contact_row(&self.contacts.pairing.rows, point));
+            if self.contacts.slips.get(point) == Some(&Slip::Stick) {
                 for rows in tangents {
                     held.add(rigid.contact_row(rows, point));
                 }
@@ -287,27 +265,86 @@ impl Driver {
         }
         held
     }
+}
+
+impl Attempt {
+    pub(super) fn unheld(&self, rigid: &Rigid, c: &[f64]) -> Error {
+        let (piece, motion) = rigid.name(c);
+        Error::Unheld {
+            step: self.state.step + 1,
+            time: self.state.time + self.dt,
+            body: body_of(&self.system, piece),
+            motion: motion.to_string(),
+        }
+    }
+
+    /// Displacement of the nodes at the x of the iteration, m.
+    pub(super) fn places(&self) -> Vec<f64> {
+        let mut places = vec![0.0; self.vectors.x.len()];
+        let (motion, x) = (&self.state.motion, &self.vectors.x);
+        self.maps.whole(
+            |map| map.displacement,
+            motion,
+            [x, &self.vectors.push],
+            &mut places,
+        );
+        places
+    }
 
     /// Points that carry a force.
-    fn carrying(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn carrying(&self) -> impl Iterator<Item = usize> + '_ {
         let forces = self.next.interface.force.iter().enumerate();
         forces
             .filter(|(_, force)| **force != 0.0)
             .map(|(point, _)| point)
     }
+}
 
+impl Parts {
+    /// Adds to x what finite turns of the pieces have beyond the linear motion `share` dx from `before`.
+    pub(super) fn turn(&self, attempt: &mut Attempt, share: f64) {
+        let system = Arc::clone(&attempt.system);
+        let mut places = vec![0.0; attempt.vectors.x.len()];
+        let motion = &attempt.state.motion;
+        attempt.maps.whole(
+            |map| map.displacement,
+            motion,
+            [&attempt.vectors.before, &attempt.vectors.push],
+            &mut places,
+        );
+        let pieces = Arc::clone(&self.floating.pieces);
+        let rigid = Rigid::new(
+            &system,
+            &pieces,
+            (&places, Some(&attempt.state.motion.frames)),
+        );
+        let mut c = rigid.nearest(&attempt.vectors.dx);
+        c.iter_mut().for_each(|c| *c *= share);
+        for (i, u) in rigid.arc(&c) {
+            attempt.vectors.x[i] += u;
+        }
+    }
+}
+
+impl Contacts {
     /// Multiple of a rigid motion at which the first of the open points closes; none where none comes closer.
-    fn way_to_contact(&self, rigid: &Rigid, c: &[f64]) -> Option<f64> {
+    pub(super) fn way_to_contact(
+        &self,
+        attempt: &Attempt,
+        rigid: &Rigid,
+        c: &[f64],
+    ) -> Option<f64> {
         let mut way: Option<f64> = None;
-        for point in 0..self.system.points() {
-            if self.next.interface.force[point] != 0.0 || self.pairing.rows.gap(point).is_infinite()
+        for point in 0..attempt.system.points() {
+            if attempt.next.interface.force[point] != 0.0
+                || self.pairing.rows.gap(point).is_infinite()
             {
                 continue;
             }
             let row = rigid.contact_row(&self.pairing.rows, point);
             let rate: f64 = row.iter().zip(c).map(|(n, c)| n * c).sum();
             if rate < -INDEPENDENT * norm(&row) * norm(c) {
-                let until = self.now(point, true).0.max(0.0) / -rate;
+                let until = self.now(attempt, point, true).0.max(0.0) / -rate;
                 way = Some(way.map_or(until, |way| way.min(until)));
             }
         }

@@ -1,8 +1,8 @@
 //! Bolts that the static stage tightens: their forces among the loads, and what they keep from the stage.
 
-use super::Driver;
+use super::owners::Attempt;
 
-impl Driver {
+impl Attempt {
     /// Adds the forces of bolts to the loads of the step at a time (s): over the static stage all of their force, in the dynamics what they keep
     /// beside their stiffness.
     pub(super) fn add_bolts(&mut self, time: f64) {

@@ -8,6 +8,7 @@ use carom_nonsmooth::Compliance;
 
 use super::Driver;
 use super::deletion::as_narrowed;
+use super::owners::{Attempt, Contacts, Parts};
 use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
@@ -24,7 +25,7 @@ impl Driver {
         for _ in 0..ADDITIONS {
             self.begin_forces()?;
             self.find_forces()?;
-            self.look_further();
+            self.contacts.look_further(&mut self.attempt);
             if !self.add_missed() {
                 break;
             }
@@ -42,7 +43,7 @@ impl Driver {
     pub(super) fn begin_forces(&mut self) -> Result<(), Error> {
         match self.finds_all_at_once() {
             true => {
-                self.leave_solve();
+                self.parts.leave_solve(&mut self.attempt);
                 Ok(())
             }
             false => self.begin_solve(),
@@ -53,31 +54,22 @@ impl Driver {
     pub(super) fn find_forces(&mut self) -> Result<(), Error> {
         let solved = self.solve_candidates();
         if solved.is_ok() {
-            self.end_iteration();
+            self.parts.end_iteration(&mut self.attempt);
         }
         // a column that could not be solved for comes before what follows from it
-        self.solves_ended()?;
+        self.parts.solves_ended(&self.attempt)?;
         solved
     }
 
     /// Forces of the iteration without those of contacts, into `work`.
     fn load_iteration(&mut self) {
-        self.begin_link_iteration();
-        self.rebound.begin();
-        let jumps = self.jumps();
-        let vectors = &mut self.vectors;
+        self.links.begin_link_iteration();
+        self.contacts.rebound.begin();
+        let jumps = self.attempt.jumps();
+        let vectors = &mut self.attempt.vectors;
         vectors.work.copy_from_slice(&vectors.residual);
         if jumps {
-            self.load_jump();
-        }
-    }
-
-    /// Adds to the forces in `work` what the jump of the supports gives.
-    fn load_jump(&mut self) {
-        let vectors = &mut self.vectors;
-        self.effective.load_of(&vectors.jump, &mut vectors.place);
-        for (i, (r, k)) in vectors.work.iter_mut().zip(&vectors.place).enumerate() {
-            *r = if self.system.fixed[i] { 0.0 } else { *r - k };
+            self.parts.load_jump(&mut self.attempt);
         }
     }
 
@@ -87,47 +79,13 @@ impl Driver {
     /// Iterations that do not end.
     fn begin_solve(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
-        if let Some((operators, _)) = self.effective.both() {
-            operators.begin(&self.vectors.work, &mut self.vectors.half);
+        if let Some((operators, _)) = self.parts.effective.both() {
+            operators.begin(&self.attempt.vectors.work, &mut self.attempt.vectors.half);
         }
-        self.vectors.left.clear();
+        self.attempt.vectors.left.clear();
         self.hold_links();
-        self.phases.sweeps += begin.elapsed();
-        self.solves_ended()
-    }
-
-    /// Whether all solves since the last begin have ended.
-    ///
-    /// # Errors
-    /// Iterations that did not.
-    fn solves_ended(&mut self) -> Result<(), Error> {
-        let operators = self.effective.both();
-        match operators.and_then(|(operators, _)| operators.failure()) {
-            None => Ok(()),
-            Some((unknown, cause)) => Err(self.not_solved(unknown, cause)),
-        }
-    }
-
-    /// Leaves the solve with the forces in `work` to the problem of contacts.
-    fn leave_solve(&mut self) {
-        if let Some((operators, _)) = self.effective.both() {
-            let vectors = &mut self.vectors;
-            operators.leave(&vectors.work, &mut vectors.half, &mut vectors.left);
-        }
-    }
-
-    /// The motion of the iteration from the begun solve with all forces in it.
-    fn end_iteration(&mut self) {
-        let begin = Instant::now();
-        if let Some((operators, _)) = self.effective.both() {
-            operators.end(&mut self.vectors.half, &mut self.vectors.dx);
-        }
-        if self.vectors.jumps {
-            for (dx, jump) in self.vectors.dx.iter_mut().zip(&self.vectors.jump) {
-                *dx += jump;
-            }
-        }
-        self.phases.sweeps += begin.elapsed();
+        self.attempt.phases.sweeps += begin.elapsed();
+        self.parts.solves_ended(&self.attempt)
     }
 
     /// The motion `dx` that the forces in `work` and the jump of the supports give.
@@ -135,103 +93,97 @@ impl Driver {
     /// # Errors
     /// Iterations that do not end.
     pub(super) fn free_motion(&mut self) -> Result<(), Error> {
-        if self.jumps() {
-            self.load_jump();
+        if self.attempt.jumps() {
+            self.parts.load_jump(&mut self.attempt);
         }
         self.begin_solve()?;
-        self.end_iteration();
+        self.parts.end_iteration(&mut self.attempt);
         Ok(())
     }
 
     /// Points that may carry a force. Some laws say so before the forces; of others, those are taken that carried one or that
     /// close at the x of the iteration or at twice the rate at the start, and the rest is looked at after the solve.
     pub(super) fn choose_candidates(&mut self) {
-        self.candidates.clear();
-        let active = std::mem::take(&mut self.active);
-        for point in active.within(0..self.system.points()) {
-            let chosen = match self.told(point) {
+        self.contacts.candidates.clear();
+        let active = std::mem::take(&mut self.contacts.active);
+        for point in active.within(0..self.attempt.system.points()) {
+            let chosen = match self.contacts.told(&self.attempt, point) {
                 Some(told) => told,
-                None => self.next.interface.status[point] != Status::Open || self.approaches(point),
+                None => {
+                    self.attempt.next.interface.status[point] != Status::Open
+                        || self.approaches(point)
+                }
             };
-            self.next.interface.watched[point] = chosen;
+            self.attempt.next.interface.watched[point] = chosen;
             if chosen {
-                self.candidates.push(point as u32);
+                self.contacts.candidates.push(point as u32);
             }
         }
-        self.active = active;
-        if self.maps.is_explicit() {
-            self.leave_to_others();
+        self.contacts.active = active;
+        if self.attempt.maps.is_explicit() {
+            self.contacts.leave_to_others(&self.attempt);
         }
-    }
-
-    /// Leaves out points whose contact those opposite to them tell, where forces of both would hardly move anything apart.
-    fn leave_to_others(&mut self) {
-        let (system, pairing) = (Arc::clone(&self.system), &self.pairing);
-        let chosen = &self.next.interface.watched;
-        self.candidates.retain(|&point| {
-            let number = system.contact_of(point as usize);
-            let contact = as_narrowed(&self.narrowed, &system, number);
-            let first = system.contacts[number].range.start;
-            let takes_part = |other: usize| chosen[first + other];
-            !contact.leaves_it((pairing, first), point as usize - first, takes_part)
-        });
     }
 
     fn approaches(&self, point: usize) -> bool {
-        let tolerance = self.system.tolerance_at(point);
+        let tolerance = self.attempt.system.tolerance_at(point);
         match self.is_affine() {
             true => {
-                let gap = self.pairing.rows.gap(point);
-                approaches((gap, self.rate_at_start(point)), self.dt, tolerance)
+                let gap = self.contacts.pairing.rows.gap(point);
+                approaches(
+                    (gap, self.contacts.rate_at_start(&self.attempt, point)),
+                    self.attempt.dt,
+                    tolerance,
+                )
             }
-            false => self.now(point, true).0 <= tolerance,
+            false => self.contacts.now(&self.attempt, point, true).0 <= tolerance,
         }
     }
 
     /// Forces and statuses of the candidates, whose forces are added to the begun solve.
     fn solve_candidates(&mut self) -> Result<(), Error> {
-        if self.candidates.is_empty() {
-            self.release();
+        if self.contacts.candidates.is_empty() {
+            self.contacts.release(&mut self.attempt);
             return Ok(());
         }
-        if self.rubs() {
+        if self.contacts.rubs(&self.attempt) {
             return self.solve_with_friction();
         }
-        let (system, together) = (Arc::clone(&self.system), self.is_one_group());
-        let Some((operators, compliance)) = self.effective.both() else {
+        let (system, together) = (Arc::clone(&self.attempt.system), self.is_one_group());
+        let Some((operators, compliance)) = self.parts.effective.both() else {
             return Ok(());
         };
-        let rows = &self.pairing.rows;
-        let points = (&self.candidates[..], 1, together);
-        if !self.refined.holds_columns {
+        let rows = &self.contacts.pairing.rows;
+        let points = (&self.contacts.candidates[..], 1, together);
+        if !self.parts.refined.holds_columns {
             let room = compliance.has_room(points, rows, &system.fixed, operators);
-            room.map_err(|cause| Error::no_room(self.state.step, cause))?;
+            room.map_err(|cause| Error::no_room(self.attempt.state.step, cause))?;
             compliance.update(points, rows, &system.fixed, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
         self.describe_candidates(None);
-        let factor = self.maps.contact();
+        let factor = self.attempt.maps.contact();
         if iterate {
             return self.solve_iterated(factor);
         }
         if several {
-            let map = self.maps.first();
+            let map = self.attempt.maps.first();
             self.solve_groups([map.gap.x * factor, map.rate.x * factor])?;
             return self.take_forces(factor);
         }
-        let Some((operators, compliance, mut linking)) = self.effective.all() else {
+        let Some((operators, compliance, mut linking)) = self.parts.effective.all() else {
             return Ok(());
         };
-        let rows = &self.pairing.rows;
+        let rows = &self.contacts.pairing.rows;
         let (matrix, version) = match &mut linking {
             Some(linking) => linking.compliance(&system, (&mut *operators, compliance), rows),
             None => (compliance.matrix(), compliance.version),
         };
-        let impulsive = match &mut self.impulses {
-            Some(stage) if sums_compliances(&system, self.maps.first()) => {
-                let rate = self.maps.first().rate;
+        let impulsive = match &mut self.stages.impulses {
+            Some(stage) if sums_compliances(&system, self.attempt.maps.first()) => {
+                let rate = self.attempt.maps.first().rate;
                 let own = (rate.x * factor, matrix);
-                stage.sum(&system, rows, &self.candidates, own, rate.c)
+                stage.sum(&system, rows, &self.contacts.candidates, own, rate.c)
             }
             _ => None,
         };
@@ -240,69 +192,91 @@ impl Driver {
             None => (
                 matrix,
                 [
-                    self.maps.first().gap.x * factor,
-                    self.maps.first().rate.x * factor,
+                    self.attempt.maps.first().gap.x * factor,
+                    self.attempt.maps.first().rate.x * factor,
                 ],
             ),
         };
         let condensed = (matrix, compliance.rows(), version);
-        let matrix = self
-            .with_weak
-            .of(&self.weak, &system, (condensed, rows), factors);
+        let matrix =
+            self.contacts
+                .with_weak
+                .of(&self.contacts.weak, &system, (condensed, rows), factors);
         let problem = (Compliance::Dense(matrix.0), matrix.1);
-        let solved = self.interface.solve(&self.candidate_data, problem, factors);
+        let solved = self
+            .contacts
+            .interface
+            .solve(&self.contacts.candidate_data, problem, factors);
         if let Err(failure) = solved {
             let compliance = matrix.0.to_vec();
-            return Err(self.keep_problem(failure, compliance, factors));
+            return Err(self
+                .contacts
+                .keep_problem(&self.attempt, failure, compliance, factors));
         }
         self.take_forces(factor)
     }
 
     /// Writes the forces and statuses found, and adds the forces, times `factor`, to the begun solve.
     pub(super) fn take_forces(&mut self, factor: f64) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
-        self.note_clipped(self.interface.unsettled);
-        let Some((operators, compliance, linking)) = self.effective.all() else {
+        let system = Arc::clone(&self.attempt.system);
+        self.contacts
+            .note_clipped(&mut self.attempt, self.contacts.interface.unsettled);
+        let Some((operators, compliance, linking)) = self.parts.effective.all() else {
             return Ok(());
         };
-        let interface = &mut self.next.interface;
+        let interface = &mut self.attempt.next.interface;
         interface.force.fill(0.0);
         interface.status.fill(Status::Open);
-        for (k, &point) in self.candidates.iter().enumerate() {
-            let force = self.interface.forces[k];
+        for (k, &point) in self.contacts.candidates.iter().enumerate() {
+            let force = self.contacts.interface.forces[k];
             interface.force[point as usize] = force;
-            interface.status[point as usize] = self.interface.statuses[k];
+            interface.status[point as usize] = self.contacts.interface.statuses[k];
             if force != 0.0 {
-                compliance.add(point, factor * force, operators, &mut self.vectors.half);
+                compliance.add(
+                    point,
+                    factor * force,
+                    operators,
+                    &mut self.attempt.vectors.half,
+                );
             }
         }
         if let Some(linking) = linking {
-            let forces = self.candidates.iter().zip(&self.interface.forces);
+            let forces = self
+                .contacts
+                .candidates
+                .iter()
+                .zip(&self.contacts.interface.forces);
             let forces = forces.map(|(&point, force)| (point, factor * force));
-            let pushed = &mut self.multipliers.change[1];
-            linking.answer(&system, operators, forces, (&mut self.vectors.half, pushed));
+            let pushed = &mut self.links.multipliers.change[1];
+            linking.answer(
+                &system,
+                operators,
+                forces,
+                (&mut self.attempt.vectors.half, pushed),
+            );
         }
         self.part_links();
-        if let Some(candidate) = self.interface.circled {
-            self.warn_of_circle(candidate);
+        if let Some(candidate) = self.contacts.interface.circled {
+            self.contacts.warn_of_circle(&self.attempt, candidate);
         }
-        self.take_weak();
+        self.contacts.take_weak(&self.attempt);
         Ok(())
     }
 
     /// Whether all candidates are one problem, whatever they share: where links, weak forms or the mass couple them besides.
     pub(super) fn is_one_group(&self) -> bool {
-        let sums = self.impulses.is_some() && sums_compliances(&self.system, self.maps.first());
-        sums || self.has_links() || !self.weak.none()
+        let sums = self.stages.impulses.is_some()
+            && sums_compliances(&self.attempt.system, self.attempt.maps.first());
+        sums || self.attempt.has_links() || !self.contacts.weak.none()
     }
 
     /// Forces and statuses of candidates in several groups, each solved by itself.
     fn solve_groups(&mut self, factors: [f64; 2]) -> Result<(), Error> {
-        let Some((_, compliance)) = self.effective.both() else {
+        let Some((_, compliance)) = self.parts.effective.both() else {
             return Ok(());
         };
-        let n = self.candidates.len();
-        let all = &mut self.interface;
+        let n = self.contacts.candidates.len();
+        let all = &mut self.contacts.interface;
         all.forces.clear();
         all.forces.resize(n, 0.0);
         all.statuses.clear();
@@ -311,13 +285,16 @@ impl Driver {
         let mut failed = None;
         for (group, range) in compliance.groups().ranges().enumerate() {
             let places = &compliance.groups().order()[range];
-            if self.interfaces.len() == group {
+            if self.contacts.interfaces.len() == group {
                 let mut solver = Interface::default();
-                solver.interrupt.clone_from(&self.interrupt);
-                self.interfaces.push(solver);
+                solver.interrupt.clone_from(&self.attempt.interrupt);
+                self.contacts.interfaces.push(solver);
             }
-            let (solver, all) = (&mut self.interfaces[group], &mut self.interface);
-            let of_place = |&place: &u32| self.candidate_data[place as usize];
+            let (solver, all) = (
+                &mut self.contacts.interfaces[group],
+                &mut self.contacts.interface,
+            );
+            let of_place = |&place: &u32| self.contacts.candidate_data[place as usize];
             let own: Vec<Candidate> = places.iter().map(of_place).collect();
             let block = compliance.block(group);
             let problem = (Compliance::Dense(block), compliance.version);
@@ -336,10 +313,100 @@ impl Driver {
             all.unsettled = all.unsettled.or(unsettled);
         }
         if let Some((failure, block, places)) = failed {
-            self.keep_places(&places);
-            return Err(self.keep_problem(failure, block, factors));
+            self.contacts.keep_places(&places);
+            return Err(self
+                .contacts
+                .keep_problem(&self.attempt, failure, block, factors));
         }
         Ok(())
+    }
+
+    /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
+    fn add_missed(&mut self) -> bool {
+        let before = self.contacts.candidates.len();
+        let active = std::mem::take(&mut self.contacts.active);
+        for point in active.within(0..self.attempt.system.points()) {
+            let known = self.contacts.candidates[..before].binary_search(&(point as u32));
+            if known.is_ok() || self.contacts.told(&self.attempt, point).is_some() {
+                continue;
+            }
+            let step = self
+                .contacts
+                .pairing
+                .rows
+                .product(point, &self.attempt.vectors.dx);
+            let (gap, rate) = self.contacts.now(&self.attempt, point, false);
+            let [closing, approach] = self.attempt.added(point, step);
+            let ahead = (gap + closing, rate + approach);
+            let (gap, rate) = self.contacts.weakly(&self.attempt, point, ahead);
+            if self.asks(point, gap, rate) {
+                self.contacts.candidates.push(point as u32);
+                self.attempt.next.interface.watched[point] = true;
+            }
+        }
+        self.contacts.active = active;
+        self.contacts.candidates.sort_unstable();
+        self.contacts.candidates.len() > before
+    }
+}
+
+impl Parts {
+    /// Adds to the forces in `work` what the jump of the supports gives.
+    pub(super) fn load_jump(&mut self, attempt: &mut Attempt) {
+        let vectors = &mut attempt.vectors;
+        self.effective.load_of(&vectors.jump, &mut vectors.place);
+        for (i, (r, k)) in vectors.work.iter_mut().zip(&vectors.place).enumerate() {
+            *r = if attempt.system.fixed[i] { 0.0 } else { *r - k };
+        }
+    }
+
+    /// Whether all solves since the last begin have ended.
+    ///
+    /// # Errors
+    /// Iterations that did not.
+    pub(super) fn solves_ended(&mut self, attempt: &Attempt) -> Result<(), Error> {
+        let operators = self.effective.both();
+        match operators.and_then(|(operators, _)| operators.failure()) {
+            None => Ok(()),
+            Some((unknown, cause)) => Err(attempt.not_solved(unknown, cause)),
+        }
+    }
+
+    /// Leaves the solve with the forces in `work` to the problem of contacts.
+    pub(super) fn leave_solve(&mut self, attempt: &mut Attempt) {
+        if let Some((operators, _)) = self.effective.both() {
+            let vectors = &mut attempt.vectors;
+            operators.leave(&vectors.work, &mut vectors.half, &mut vectors.left);
+        }
+    }
+
+    /// The motion of the iteration from the begun solve with all forces in it.
+    pub(super) fn end_iteration(&mut self, attempt: &mut Attempt) {
+        let begin = Instant::now();
+        if let Some((operators, _)) = self.effective.both() {
+            operators.end(&mut attempt.vectors.half, &mut attempt.vectors.dx);
+        }
+        if attempt.vectors.jumps {
+            for (dx, jump) in attempt.vectors.dx.iter_mut().zip(&attempt.vectors.jump) {
+                *dx += jump;
+            }
+        }
+        attempt.phases.sweeps += begin.elapsed();
+    }
+}
+
+impl Contacts {
+    /// Leaves out points whose contact those opposite to them tell, where forces of both would hardly move anything apart.
+    pub(super) fn leave_to_others(&mut self, attempt: &Attempt) {
+        let (system, pairing) = (Arc::clone(&attempt.system), &self.pairing);
+        let chosen = &attempt.next.interface.watched;
+        self.candidates.retain(|&point| {
+            let number = system.contact_of(point as usize);
+            let contact = as_narrowed(&self.narrowed, &system, number);
+            let first = system.contacts[number].range.start;
+            let takes_part = |other: usize| chosen[first + other];
+            !contact.leaves_it((pairing, first), point as usize - first, takes_part)
+        });
     }
 
     /// Makes the candidates those at some places, to be told of.
@@ -351,78 +418,57 @@ impl Driver {
     }
 
     /// Notes the candidate whose tension did not settle, if there is one, in place of that of the iteration before.
-    pub(super) fn note_clipped(&mut self, candidate: Option<usize>) {
-        self.notices.clipped.count = 0;
+    pub(super) fn note_clipped(&self, attempt: &mut Attempt, candidate: Option<usize>) {
+        attempt.notices.clipped.count = 0;
         if let Some(candidate) = candidate {
-            let place = self.name(self.candidates[candidate] as usize);
-            self.notices.clipped.add(|| place);
+            let place = attempt.name(self.candidates[candidate] as usize);
+            attempt.notices.clipped.add(|| place);
         }
     }
 
     /// Warns that statuses of contact points went in circles from this candidate on.
-    pub(super) fn warn_of_circle(&self, candidate: usize) {
-        let name = self.name(self.candidates[candidate] as usize);
+    pub(super) fn warn_of_circle(&self, attempt: &Attempt, candidate: usize) {
+        let name = attempt.name(self.candidates[candidate] as usize);
         tracing::warn!(
             "step {}: contact statuses cycle at {name}; they now change one at a time",
-            self.state.step + 1
+            attempt.state.step + 1
         );
     }
 
     /// No contact force at all.
-    pub(super) fn release(&mut self) {
-        self.note_clipped(None);
-        for point in self.active.within(0..self.system.points()) {
-            self.next.interface.release(point);
+    pub(super) fn release(&mut self, attempt: &mut Attempt) {
+        self.note_clipped(attempt, None);
+        for point in self.active.within(0..attempt.system.points()) {
+            attempt.next.interface.release(point);
             if let Some(slip) = self.slips.get_mut(point) {
                 *slip = Slip::Open;
             }
         }
-        self.take_weak();
-    }
-
-    /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
-    fn add_missed(&mut self) -> bool {
-        let before = self.candidates.len();
-        let active = std::mem::take(&mut self.active);
-        for point in active.within(0..self.system.points()) {
-            let known = self.candidates[..before].binary_search(&(point as u32));
-            if known.is_ok() || self.told(point).is_some() {
-                continue;
-            }
-            let step = self.pairing.rows.product(point, &self.vectors.dx);
-            let (gap, rate) = self.now(point, false);
-            let [closing, approach] = self.added(point, step);
-            let ahead = (gap + closing, rate + approach);
-            let (gap, rate) = self.weakly(point, ahead);
-            if self.asks(point, gap, rate) {
-                self.candidates.push(point as u32);
-                self.next.interface.watched[point] = true;
-            }
-        }
-        self.active = active;
-        self.candidates.sort_unstable();
-        self.candidates.len() > before
+        self.take_weak(attempt);
     }
 
     /// Keeps the interface problem that was not solved, and names the failure.
     pub(super) fn keep_problem(
         &mut self,
+        attempt: &Attempt,
         failure: Failure,
         compliance: Vec<f64>,
         factors: [f64; 2],
     ) -> Error {
         let names = self.candidates.iter();
-        let names = names.map(|&point| self.name(point as usize));
+        let names = names.map(|&point| attempt.name(point as usize));
         self.failed = Some(InterfaceProblem {
-            step: self.state.step + 1,
+            step: attempt.state.step + 1,
             names: names.collect(),
             candidates: self.candidate_data.clone(),
             compliance,
             factors,
         });
-        self.interface_error(failure, &self.candidates)
+        attempt.interface_error(failure, &self.candidates)
     }
+}
 
+impl Attempt {
     /// The error behind a failure of the interface problem of some points.
     pub(super) fn interface_error(&self, failure: Failure, candidates: &[u32]) -> Error {
         let step = self.state.step + 1;

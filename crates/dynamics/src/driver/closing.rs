@@ -20,8 +20,9 @@
 
 use std::sync::Arc;
 
+use super::Vectors;
+use super::owners::{Attempt, Contacts};
 use super::paired::Paired;
-use super::{Driver, Vectors};
 
 /// Steps before the instant at which the law tests closure from which on the closing is sought: those of the step before, and as much
 /// again for the difference of its velocity.
@@ -31,32 +32,37 @@ const BEFORE: f64 = 1.5;
 const LOOKS: usize = 60;
 
 /// Points of one contact at one configuration.
-struct Look {
+pub(super) struct Look {
     /// The least gap, m; infinite where nothing is near.
     gap: f64,
     /// The next time at which one of them is closed at its rate, after the configuration, s; infinite where none comes closer.
     next: f64,
 }
 
-impl Driver {
+impl Contacts {
     /// The instant of a step at which the points of a contact are paired for a law in the rate, over the time by which they move.
-    pub(super) fn captured(&self, contact: usize) -> f64 {
+    pub(super) fn captured(&self, attempt: &Attempt, contact: usize) -> f64 {
         let own = self.closings.instant(contact);
-        own.unwrap_or_else(|| self.law(&self.system.contacts[contact]).get().capture())
+        own.unwrap_or_else(|| {
+            attempt
+                .law(&attempt.system.contacts[contact])
+                .get()
+                .capture()
+        })
     }
 
     /// Finds the contacts that close out of flight, which are paired as the step begins, and pairs them where they do.
-    pub(super) fn find_closings(&mut self) {
-        let system = Arc::clone(&self.system);
+    pub(super) fn find_closings(&mut self, attempt: &mut Attempt) {
+        let system = Arc::clone(&attempt.system);
         let mut any = false;
         for number in 0..system.contacts.len() {
-            if self.closings.rigid[number] && self.flies(number) {
-                self.closings.instant[number] = self.closing(number);
+            if self.closings.rigid[number] && self.flies(attempt, number) {
+                self.closings.instant[number] = self.closing(attempt, number);
                 any |= self.closings.instant[number].is_some();
             }
         }
         if any {
-            self.pair(true);
+            self.pair(attempt, true);
         }
     }
 
@@ -67,32 +73,33 @@ impl Driver {
 
     /// Whether a contact has had no force in the step before and has not landed since it was last open, and where it is paired a
     /// point of it is closed.
-    fn flies(&self, number: usize) -> bool {
-        let map = self.map_of(number);
-        let steps = !self.maps.is_static() && !self.between() && map.displacement.x != 0.0;
+    pub(super) fn flies(&self, attempt: &Attempt, number: usize) -> bool {
+        let map = attempt.map_of(number);
+        let steps = !attempt.maps.is_static() && !attempt.between() && map.displacement.x != 0.0;
         if !steps || map.moves == 0.0 {
             return false;
         }
-        let before = &self.state.interface;
+        let before = &attempt.state.interface;
         let free = |point: usize| before.force[point] == 0.0 && before.landed[point] == 0.0;
-        let closed =
-            |point: usize| self.pairing.rows.gap(point) <= self.system.contacts[number].tolerance;
-        self.system.points_of(number).all(free) && self.system.points_of(number).any(closed)
+        let closed = |point: usize| {
+            self.pairing.rows.gap(point) <= attempt.system.contacts[number].tolerance
+        };
+        attempt.system.points_of(number).all(free) && attempt.system.points_of(number).any(closed)
     }
 
     /// When the first point of a contact that flies closes, over the time by which its points move; none where it was closed all the
     /// time.
-    fn closing(&mut self, number: usize) -> Option<f64> {
+    pub(super) fn closing(&mut self, attempt: &mut Attempt, number: usize) -> Option<f64> {
         let (tolerance, moves) = (
-            self.system.contacts[number].tolerance,
-            self.map_of(number).moves,
+            attempt.system.contacts[number].tolerance,
+            attempt.map_of(number).moves,
         );
-        let mut closed = self.captured(number);
+        let mut closed = self.captured(attempt, number);
         let mut open = closed - BEFORE;
-        if self.look_at(number, open).gap <= tolerance {
+        if self.look_at(attempt, number, open).gap <= tolerance {
             return None;
         }
-        let mut look = self.look_at(number, closed);
+        let mut look = self.look_at(attempt, number, closed);
         let mut at = closed;
         for _ in 0..LOOKS {
             if look.gap <= tolerance {
@@ -111,23 +118,24 @@ impl Driver {
             if at <= open || at >= closed {
                 break;
             }
-            look = self.look_at(number, at);
+            look = self.look_at(attempt, number, at);
         }
         Some(closed)
     }
 
     /// Pairs one contact a part of the time by which points move after the start of the step.
-    fn look_at(&mut self, number: usize, instant: f64) -> Look {
-        let moves = self.map_of(number).moves;
-        let Vectors { x, push, place, .. } = &mut self.vectors;
+    pub(super) fn look_at(&mut self, attempt: &mut Attempt, number: usize, instant: f64) -> Look {
+        let moves = attempt.map_of(number).moves;
+        let Vectors { x, push, place, .. } = &mut attempt.vectors;
         let captured = Paired::Captured(instant);
-        let motion = &self.state.motion;
-        self.maps
+        let motion = &attempt.state.motion;
+        attempt
+            .maps
             .whole(|map| captured.row(map), motion, [x, push], place);
         self.far.forget_places();
         std::mem::swap(&mut self.pairing, &mut self.closings.room);
         self.pairing.clear();
-        self.append(number, self.state.time + instant * moves);
+        self.append(attempt, number, attempt.state.time + instant * moves);
         let rows = &self.pairing.rows;
         let mut look = Look {
             gap: f64::INFINITY,
@@ -135,7 +143,7 @@ impl Driver {
         };
         for point in (0..rows.len()).filter(|&point| rows.gap(point).is_finite()) {
             let gap = rows.gap(point);
-            let rate = rows.product(point, &self.state.motion.v) + rows.rate(point);
+            let rate = rows.product(point, &attempt.state.motion.v) + rows.rate(point);
             look.gap = look.gap.min(gap);
             if rate < 0.0 {
                 look.next = look.next.min(gap / -rate);
@@ -146,13 +154,13 @@ impl Driver {
     }
 
     /// How deep the contacts of rigid bodies have landed, once the gaps at the end of the step are known.
-    pub(super) fn note_landings(&mut self) {
-        for number in 0..self.system.contacts.len() {
+    pub(super) fn note_landings(&self, attempt: &mut Attempt) {
+        for number in 0..attempt.system.contacts.len() {
             if !self.closings.rigid[number] {
                 continue;
             }
-            let interface = &mut self.next.interface;
-            let points = self.system.points_of(number);
+            let interface = &mut attempt.next.interface;
+            let points = attempt.system.points_of(number);
             let depth = match self.closings.instant(number) {
                 Some(_) => {
                     let pressed = points
@@ -162,7 +170,7 @@ impl Driver {
                 }
                 None => {
                     let touches =
-                        |point| interface.gap[point] <= self.system.contacts[number].tolerance;
+                        |point| interface.gap[point] <= attempt.system.contacts[number].tolerance;
                     match points.clone().any(touches) {
                         true => continue,
                         false => 0.0,

@@ -8,49 +8,50 @@ use std::sync::Arc;
 
 use carom_contact::law::{ContactLaw, End, Level, Local, Status};
 
-use super::Driver;
+use super::owners::{Attempt, Contacts};
 use super::record::total;
 
 /// Looks at the piece of a law's curve, each of which may lead to the next one.
 const LOOKS: u32 = 20;
 
-impl Driver {
+impl Contacts {
     /// Gives the state its gaps, rates, and the forces that laws with a compliance have there.
-    pub(super) fn compress(&mut self) {
-        let system = Arc::clone(&self.system);
-        self.pair_now();
+    pub(super) fn compress(&mut self, attempt: &mut Attempt) {
+        let system = Arc::clone(&attempt.system);
+        self.pair_now(attempt);
         for point in 0..system.points() {
             let rows = &self.pairing.rows;
-            let (gap, rate) = (rows.gap(point), self.rate_at_start(point));
-            let interface = &mut self.state.interface;
+            let (gap, rate) = (rows.gap(point), self.rate_at_start(attempt, point));
+            let interface = &mut attempt.state.interface;
             (interface.gap[point], interface.rate[point]) = (gap, rate);
             (interface.force[point], interface.carried[point]) = (0.0, 0.0);
         }
-        self.state.motion.contact_force.fill(0.0);
+        attempt.state.motion.contact_force.fill(0.0);
         for (number, contact) in system.contacts.iter().enumerate() {
             let zone = system.zone_of_body[system.contacts[number].secondary_body];
-            let law = self.law(contact);
+            let law = attempt.law(contact);
             let keeps = system.schemes[zone].get().keeps_acceleration();
-            if law.get().level() != Level::GapAndRate || !keeps || self.is_static() {
+            if law.get().level() != Level::GapAndRate || !keeps || attempt.is_static() {
                 continue;
             }
             for point in system.points_of(number) {
-                let interface = &self.state.interface;
+                let interface = &attempt.state.interface;
                 let (gap, rate) = (interface.gap[point], interface.rate[point]);
-                let (status, force) = at_rest(law.get(), (gap, rate), &self.local(point, gap));
+                let (status, force) =
+                    at_rest(law.get(), (gap, rate), &self.local(attempt, point, gap));
                 if force == 0.0 {
                     continue;
                 }
-                let interface = &mut self.state.interface;
+                let interface = &mut attempt.state.interface;
                 interface.force[point] = force;
                 interface.carried[point] = force;
                 interface.status[point] = status;
-                let forces = &mut self.state.motion.contact_force;
+                let forces = &mut attempt.state.motion.contact_force;
                 self.pairing.rows.add_force(point, force, forces);
             }
-            let force = |point: usize| self.state.interface.force[point];
+            let force = |point: usize| attempt.state.interface.force[point];
             let begun = total(system.points_of(number), &self.pairing.rows, force);
-            self.state.records.contacts[number].begin(begun);
+            attempt.state.records.contacts[number].begin(begun);
         }
     }
 }

@@ -6,6 +6,7 @@ use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Balance, Sliding};
 
 use super::deletion::as_narrowed;
+use super::owners::{Attempt, Contacts};
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
 use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
@@ -15,6 +16,125 @@ use carom_system::ContactPair;
 const CLEARLY: f64 = 1e-3;
 
 impl Driver {
+    /// Whether the law of an open point asks for a force at this gap and rate, beyond rounding.
+    pub(super) fn asks(&self, point: usize, gap: f64, rate: f64) -> bool {
+        let end = End {
+            gap_released: gap,
+            gap,
+            rate,
+            force: 0.0,
+        };
+        let law = self.attempt.law(self.attempt.system.point(point).0);
+        let least = match self.is_affine() {
+            true => 0.0,
+            false => -self
+                .attempt
+                .gap_tolerance(self.attempt.system.contact_of(point)),
+        };
+        gap < least
+            && law.get().status(
+                Status::Open,
+                &end,
+                &self.contacts.local(&self.attempt, point, gap),
+                0,
+            ) != Status::Open
+    }
+
+    /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
+    pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
+        let contacts = 0..self.attempt.system.contacts.len();
+        let worst = contacts.filter_map(|contact| self.worst_point_of(contact));
+        worst.reduce(|one, other| if other.1 > one.1 { other } else { one })
+    }
+
+    /// The same of a contact. Its forces are compared with the largest of its own.
+    fn worst_point_of(&self, contact: usize) -> Option<(usize, f64)> {
+        let tolerance = self.attempt.gap_tolerance(contact);
+        let points = self.attempt.system.points_of(contact);
+        let forces = self.attempt.next.interface.force[points.clone()].iter();
+        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
+        let mut worst: Option<(usize, f64)> = None;
+        for point in points {
+            if self.contacts.told(&self.attempt, point) == Some(false) {
+                continue;
+            }
+            let (gap, rate) = self.contacts.weakly(
+                &self.attempt,
+                point,
+                self.contacts.now(&self.attempt, point, true),
+            );
+            let status = self.attempt.next.interface.status[point];
+            let force = self.attempt.next.interface.force[point];
+            let law = self.attempt.law(self.attempt.system.point(point).0);
+            let defect = match status {
+                Status::Open if self.contacts.told(&self.attempt, point).is_none() => {
+                    match self.asks(point, gap, rate) {
+                        true => -gap / tolerance,
+                        false => 0.0,
+                    }
+                }
+                _ => {
+                    let local = self.contacts.local(&self.attempt, point, gap);
+                    let relation = match status {
+                        Status::Open => law.get().relation(Status::Closed, &local),
+                        _ => law.get().relation(status, &local),
+                    };
+                    let left = relation.gap * gap
+                        + relation.rate * rate
+                        + relation.compliance * force
+                        + relation.offset;
+                    let scale = relation.gap.abs() + relation.rate.abs() / self.attempt.dt;
+                    // a law that cuts tension off leaves a gap or a rate over where it would pull
+                    match status == Status::Open || law.get().clips() && force == 0.0 {
+                        true => (-left / scale / tolerance).max(0.0),
+                        false => (left / scale / tolerance).abs(),
+                    }
+                }
+            };
+            let cone = self.contacts.cone_defect(&self.attempt, point, largest)
+                / self.attempt.system.nonlinear.iteration.tolerance;
+            let defect = defect
+                .max(self.contacts.slip_defect(&self.attempt, point) / tolerance)
+                .max(cone);
+            if worst.is_none_or(|(_, most)| defect > most) {
+                worst = Some((point, defect));
+            }
+        }
+        worst
+    }
+
+    /// Nᵀ P of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
+    /// uses it.
+    pub(super) fn spread(&mut self) {
+        let f = &mut self.attempt.vectors.contact;
+        f.fill(0.0);
+        for point in self.contacts.active.within(0..self.attempt.system.points()) {
+            let force = self.attempt.next.interface.force[point];
+            if force != 0.0 {
+                self.contacts.pairing.rows.add_force(point, force, f);
+            }
+        }
+        self.contacts.spread_friction(&mut self.attempt);
+        let (system, vectors) = (&*self.attempt.system, &mut self.attempt.vectors);
+        let pushes = !vectors.push.is_empty();
+        if let Some(stage) = self.stages.impulses.as_mut().filter(|_| pushes) {
+            stage.hold(system, &mut vectors.contact);
+        }
+        for (i, push) in vectors.push.iter_mut().enumerate() {
+            *push = match system.fixed[i] {
+                true => 0.0,
+                false => vectors.contact[i] / system.mass.lumped[i],
+            };
+        }
+    }
+
+    /// Whether all is linear in the unknown, so that one iteration is all.
+    pub(super) fn is_affine(&self) -> bool {
+        !self.contacts.turns && !self.parts.effective.iterates()
+    }
+}
+
+impl Contacts {
     /// The configuration in which a contact is paired.
     pub(super) fn paired_at(&self, number: usize) -> Paired {
         match self.closings.instant(number) {
@@ -29,20 +149,24 @@ impl Driver {
     }
 
     /// Pairs all contacts at the x of the iteration. `first`: those in known configurations too.
-    pub(super) fn pair(&mut self, first: bool) {
-        let system = Arc::clone(&self.system);
+    pub(super) fn pair(&mut self, attempt: &mut Attempt, first: bool) {
+        let system = Arc::clone(&attempt.system);
         // moments about axes that turn depend on the rotation of the step
         let turns = !system.unknowns.turning().is_empty();
         if !first && !turns && !self.turns {
             return;
         }
         if turns {
-            let Vectors { x, push, end, .. } = &mut self.vectors;
+            let Vectors { x, push, end, .. } = &mut attempt.vectors;
             end.resize(x.len(), 0.0);
-            self.maps
-                .whole(|map| map.displacement, &self.state.motion, [x, push], end);
+            attempt.maps.whole(
+                |map| map.displacement,
+                &attempt.state.motion,
+                [x, push],
+                end,
+            );
         }
-        let predicts = !self.vectors.ahead.is_empty();
+        let predicts = !attempt.vectors.ahead.is_empty();
         let stand = self.rows_stand && !predicts;
         if !stand {
             self.pairing.clear();
@@ -50,15 +174,15 @@ impl Driver {
         let mut placed = None;
         for (k, contact) in system.contacts.iter().enumerate() {
             let paired = self.paired_at(k);
-            let ahead = predicts && self.looks_ahead(k) && self.closings.instant(k).is_none();
-            let motion = &self.state.motion;
+            let ahead = predicts && attempt.looks_ahead(k) && self.closings.instant(k).is_none();
+            let motion = &attempt.state.motion;
             let Vectors {
                 x,
                 push,
                 place,
                 ahead: predicted,
                 ..
-            } = &mut self.vectors;
+            } = &mut attempt.vectors;
             let configuration = (!ahead).then_some(paired);
             if ahead || placed != configuration {
                 self.far.forget_places();
@@ -67,44 +191,48 @@ impl Driver {
                 true => part_way(motion, predicted, &contact.law, place),
                 // where the one before was paired
                 false if placed == configuration => {}
-                false => self
+                false => attempt
                     .maps
                     .whole(|map| paired.row(map), motion, [x, push], place),
             }
             placed = configuration;
             if stand {
-                let (first, place) = (system.contacts[k].range.start, &self.vectors.place);
+                let (first, place) = (system.contacts[k].range.start, &attempt.vectors.place);
                 let initial = &self.initial[k].rows;
                 self.pairing.rows.move_again(first, initial, place);
                 continue;
             }
-            self.pairing.span = self.span(k);
+            self.pairing.span = self.span(attempt, k);
             let first = self.pairing.len();
-            self.append(k, self.state.time + self.paired_after(k));
+            self.append(
+                attempt,
+                k,
+                attempt.state.time + self.paired_after(attempt, k),
+            );
             if ahead {
-                self.move_gaps(first, paired);
+                self.move_gaps(attempt, first, paired);
             }
         }
         let stands = |contact: &ContactPair| contact.sliding == Sliding::Small && !contact.moves();
         self.rows_stand = !turns && !predicts && system.contacts.iter().all(stands);
-        self.stack();
+        self.stack(attempt);
     }
 
     /// Appends a contact at the configuration in `place`; `time`, s: where obstacles are.
-    pub(super) fn append(&mut self, number: usize, time: f64) {
-        let system = Arc::clone(&self.system);
-        let (middle, frames) = (self.between(), &self.state.motion.frames);
-        let fraction = self.map_of(number).force_fraction.unwrap_or(1.0);
+    pub(super) fn append(&mut self, attempt: &mut Attempt, number: usize, time: f64) {
+        let system = Arc::clone(&attempt.system);
+        let (middle, frames) = (attempt.between(), &attempt.state.motion.frames);
+        let fraction = attempt.map_of(number).force_fraction.unwrap_or(1.0);
         let Vectors {
             place, work, end, ..
-        } = &mut self.vectors;
+        } = &mut attempt.vectors;
         let mut places = system.places(time, place, frames);
         places.frames.middle = middle;
         places.frames.balance = (!end.is_empty()).then_some(Balance { end, fraction });
         let contact = as_narrowed(&self.narrowed, &system, number);
         if self.far.has(number) {
             let (gaps, first) = (
-                &self.state.interface.gap,
+                &attempt.state.interface.gap,
                 system.contacts[number].range.start,
             );
             let inside = |point: usize| gaps[first + point] < 0.0;
@@ -117,13 +245,13 @@ impl Driver {
 
     /// Gap and rate that the law of a point constrains, at the x of the iteration. `pushed`: with what the contact forces of the
     /// iteration give to the rate by themselves.
-    pub(super) fn now(&self, point: usize, pushed: bool) -> (f64, f64) {
+    pub(super) fn now(&self, attempt: &Attempt, point: usize, pushed: bool) -> (f64, f64) {
         let rows = &self.pairing.rows;
-        let number = self.system.contact_of(point);
-        let contact = &self.system.contacts[number];
-        let motion = &self.state.motion;
-        let xc = [&self.vectors.x[..], &self.vectors.push];
-        let (law, paired) = (self.law(contact), self.paired_at(number));
+        let number = attempt.system.contact_of(point);
+        let contact = &attempt.system.contacts[number];
+        let motion = &attempt.state.motion;
+        let xc = [&attempt.vectors.x[..], &attempt.vectors.push];
+        let (law, paired) = (attempt.law(contact), self.paired_at(number));
         let ahead = |map: &StepMap| instant(map, law).0[0].since(&paired.row(map));
         let rate = |map: &StepMap| {
             let mut rate = instant(map, law).0[1];
@@ -134,18 +262,188 @@ impl Driver {
         };
         let obstacle = rows.rate(point);
         let until = match law.get().level() {
-            Level::GapAndRate => self.map_of(number).instant(self.dt),
-            Level::Gap | Level::Rate => self.dt,
+            Level::GapAndRate => attempt.map_of(number).instant(attempt.dt),
+            Level::Gap | Level::Rate => attempt.dt,
         };
         let gap = rows.gap(point)
-            + self.maps.on((rows, point), ahead, motion, xc)
-            + obstacle * (until - self.paired_after(number));
+            + attempt.maps.on((rows, point), ahead, motion, xc)
+            + obstacle * (until - self.paired_after(attempt, number));
         (
             gap,
-            self.maps.on((rows, point), rate, motion, xc) + obstacle,
+            attempt.maps.on((rows, point), rate, motion, xc) + obstacle,
         )
     }
 
+    /// What the law of a point may know before the forces.
+    pub(super) fn local(&self, attempt: &Attempt, point: usize, gap_free: f64) -> Local {
+        let (contact, place) = attempt.system.point(point);
+        let carrier = &contact.points[place];
+        let rows = &self.pairing.rows;
+        let gap = match attempt.between() {
+            // S_d looks at the start of the step
+            true => attempt.state.interface.gap[point],
+            false => rows.gap(point),
+        };
+        let rate = self.rate_at_start(attempt, point);
+        Local {
+            area: carrier.area,
+            share: carrier.share,
+            gap,
+            rate: self.rebound_of(attempt, point) * rate,
+            start: attempt
+                .map_of(attempt.system.contact_of(point))
+                .start_in_way()
+                * rate,
+            gap_free,
+            dt: attempt.moves(point),
+            tolerance: attempt.system.tolerance_at(point),
+            crush: attempt.state.interface.crush[point],
+        }
+    }
+
+    /// Gap rate at the start of the step, m/s, with the rows of the iteration.
+    pub(super) fn rate_at_start(&self, attempt: &Attempt, point: usize) -> f64 {
+        let rows = &self.pairing.rows;
+        rows.product(point, &attempt.state.motion.v) + rows.rate(point)
+    }
+
+    /// Whether a point takes part, where its law says so before the forces.
+    pub(super) fn told(&self, attempt: &Attempt, point: usize) -> Option<bool> {
+        let gap = self.pairing.rows.gap(point);
+        if gap == f64::INFINITY || self.is_held(attempt, point) {
+            return Some(false);
+        }
+        let law = attempt.law(attempt.system.point(point).0);
+        let tolerance = attempt.system.tolerance_at(point);
+        if attempt.between() {
+            let gap = attempt.state.interface.gap[point];
+            return law.get().watches(gap, tolerance);
+        }
+        if self
+            .closings
+            .instant(attempt.system.contact_of(point))
+            .is_some()
+        {
+            return law.get().watches(gap, tolerance);
+        }
+        let landed = attempt.state.interface.landed[point];
+        let rate = self.rate_at_start(attempt, point);
+        told(law, (gap + landed, rate), attempt.moves(point), tolerance)
+    }
+
+    /// Whether no force moves a point, what its row moves being held but for rounding, and its law does not say the force either: the support
+    /// takes what presses it, and no force of the contact is decided by anything.
+    pub(super) fn is_held(&self, attempt: &Attempt, point: usize) -> bool {
+        let (unknowns, row) = self.pairing.rows.row(point);
+        let (mut free, mut whole) = (0.0, 0.0);
+        for (&unknown, n) in unknowns.iter().zip(row) {
+            if !attempt.system.fixed[unknown as usize] {
+                if n.abs() > CLEARLY {
+                    return false;
+                }
+                free += n * n;
+            }
+            whole += n * n;
+        }
+        if free > f64::EPSILON * whole || unknowns.is_empty() {
+            return false;
+        }
+        let law = attempt.law(attempt.system.point(point).0);
+        let relation = law
+            .get()
+            .relation(Status::Closed, &self.local(attempt, point, 0.0));
+        relation.compliance == 0.0
+    }
+
+    /// Takes the multipliers of the weak forms that belong to the forces as they stand.
+    pub(super) fn take_weak(&mut self, attempt: &Attempt) {
+        let forces = attempt.next.interface.force.iter().copied().enumerate();
+        self.weak.take(&attempt.system, forces, 1.0);
+    }
+
+    /// Gap and rate of a point with what its weak form adds to them.
+    pub(super) fn weakly(
+        &self,
+        attempt: &Attempt,
+        point: usize,
+        (gap, rate): (f64, f64),
+    ) -> (f64, f64) {
+        let force = attempt.next.interface.force[point];
+        match self.weak.shift(&attempt.system, point, force) {
+            None => (gap, rate),
+            Some((shift, Level::Gap)) => (gap + shift, rate),
+            Some((shift, _)) => (gap, rate + shift),
+        }
+    }
+
+    /// Pairs all contacts as the state has them.
+    pub(super) fn pair_now(&mut self, attempt: &mut Attempt) {
+        self.rows_stand = false;
+        self.pairing.clear();
+        self.pairing.span = [0.0; 2];
+        attempt.vectors.end.clear();
+        attempt.vectors.place.clone_from(&attempt.state.motion.u);
+        self.begin_far(attempt);
+        for contact in 0..attempt.system.contacts.len() {
+            self.append(attempt, contact, attempt.state.time);
+        }
+        self.candidates.clear();
+    }
+
+    /// Begins a step of the contacts that do not look for what is far.
+    pub(super) fn begin_far(&mut self, attempt: &Attempt) {
+        self.far.forget_places();
+        let unknowns = &attempt.system.unknowns;
+        self.far
+            .begin(unknowns, (&attempt.state.motion.v, attempt.dt));
+    }
+
+    /// Pairs again where the motion of the iteration leads further than contacts have looked.
+    pub(super) fn look_further(&mut self, attempt: &mut Attempt) {
+        if self.far.is_empty() {
+            return;
+        }
+        let Vectors {
+            x, push, place, dx, ..
+        } = &mut attempt.vectors;
+        let way = |map: &StepMap| map.displacement.since(&Row::START);
+        attempt
+            .maps
+            .whole(way, &attempt.state.motion, [x, push], place);
+        for (span, map) in attempt.maps.spans() {
+            for i in span {
+                place[i] += map.displacement.x * dx[i];
+            }
+        }
+        if !self.far.is_enough(&attempt.system.unknowns, place) {
+            // pairing uses the room of the forces of the iteration
+            let work = attempt.vectors.work.clone();
+            self.pair(attempt, true);
+            attempt.vectors.work = work;
+        }
+    }
+
+    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
+    pub(super) fn move_gaps(&mut self, attempt: &mut Attempt, first: usize, to: Paired) {
+        let Vectors {
+            x,
+            push,
+            place,
+            work,
+            ..
+        } = &mut attempt.vectors;
+        let motion = &attempt.state.motion;
+        attempt
+            .maps
+            .whole(|map| to.row(map), motion, [x, push], work);
+        for (way, from) in work.iter_mut().zip(place) {
+            *way -= *from;
+        }
+        self.pairing.rows.move_from(first, work);
+    }
+}
+
+impl Attempt {
     /// Gap and rate that the law of a contact constrains, in the map of its secondary side, and their factors of x over those of
     /// the map.
     pub(super) fn constrained(&self, number: usize) -> ([Row; 2], [f64; 2]) {
@@ -159,124 +457,12 @@ impl Driver {
         [gap.x * step, rate.x * step]
     }
 
-    /// What the law of a point may know before the forces.
-    pub(super) fn local(&self, point: usize, gap_free: f64) -> Local {
-        let (contact, place) = self.system.point(point);
-        let carrier = &contact.points[place];
-        let rows = &self.pairing.rows;
-        let gap = match self.between() {
-            // S_d looks at the start of the step
-            true => self.state.interface.gap[point],
-            false => rows.gap(point),
-        };
-        let rate = self.rate_at_start(point);
-        Local {
-            area: carrier.area,
-            share: carrier.share,
-            gap,
-            rate: self.rebound_of(point) * rate,
-            start: self.map_of(self.system.contact_of(point)).start_in_way() * rate,
-            gap_free,
-            dt: self.moves(point),
-            tolerance: self.system.tolerance_at(point),
-            crush: self.state.interface.crush[point],
-        }
-    }
-
     /// Time over which the points move with the rate that a law constrains, s.
-    fn moves(&self, point: usize) -> f64 {
+    pub(super) fn moves(&self, point: usize) -> f64 {
         match self.map_of(self.system.contact_of(point)).moves {
             0.0 => self.dt,
             moves => moves,
         }
-    }
-
-    /// Gap rate at the start of the step, m/s, with the rows of the iteration.
-    pub(super) fn rate_at_start(&self, point: usize) -> f64 {
-        let rows = &self.pairing.rows;
-        rows.product(point, &self.state.motion.v) + rows.rate(point)
-    }
-
-    /// Whether a point takes part, where its law says so before the forces.
-    pub(super) fn told(&self, point: usize) -> Option<bool> {
-        let gap = self.pairing.rows.gap(point);
-        if gap == f64::INFINITY || self.is_held(point) {
-            return Some(false);
-        }
-        let law = self.law(self.system.point(point).0);
-        let tolerance = self.system.tolerance_at(point);
-        if self.between() {
-            let gap = self.state.interface.gap[point];
-            return law.get().watches(gap, tolerance);
-        }
-        if self
-            .closings
-            .instant(self.system.contact_of(point))
-            .is_some()
-        {
-            return law.get().watches(gap, tolerance);
-        }
-        let landed = self.state.interface.landed[point];
-        let rate = self.rate_at_start(point);
-        told(law, (gap + landed, rate), self.moves(point), tolerance)
-    }
-
-    /// Whether no force moves a point, what its row moves being held but for rounding, and its law does not say the force either: the support
-    /// takes what presses it, and no force of the contact is decided by anything.
-    fn is_held(&self, point: usize) -> bool {
-        let (unknowns, row) = self.pairing.rows.row(point);
-        let (mut free, mut whole) = (0.0, 0.0);
-        for (&unknown, n) in unknowns.iter().zip(row) {
-            if !self.system.fixed[unknown as usize] {
-                if n.abs() > CLEARLY {
-                    return false;
-                }
-                free += n * n;
-            }
-            whole += n * n;
-        }
-        if free > f64::EPSILON * whole || unknowns.is_empty() {
-            return false;
-        }
-        let law = self.law(self.system.point(point).0);
-        let relation = law.get().relation(Status::Closed, &self.local(point, 0.0));
-        relation.compliance == 0.0
-    }
-
-    /// Takes the multipliers of the weak forms that belong to the forces as they stand.
-    pub(super) fn take_weak(&mut self) {
-        let forces = self.next.interface.force.iter().copied().enumerate();
-        self.weak.take(&self.system, forces, 1.0);
-    }
-
-    /// Gap and rate of a point with what its weak form adds to them.
-    pub(super) fn weakly(&self, point: usize, (gap, rate): (f64, f64)) -> (f64, f64) {
-        let force = self.next.interface.force[point];
-        match self.weak.shift(&self.system, point, force) {
-            None => (gap, rate),
-            Some((shift, Level::Gap)) => (gap + shift, rate),
-            Some((shift, _)) => (gap, rate + shift),
-        }
-    }
-
-    /// Whether the law of an open point asks for a force at this gap and rate, beyond rounding.
-    pub(super) fn asks(&self, point: usize, gap: f64, rate: f64) -> bool {
-        let end = End {
-            gap_released: gap,
-            gap,
-            rate,
-            force: 0.0,
-        };
-        let law = self.law(self.system.point(point).0);
-        let least = match self.is_affine() {
-            true => 0.0,
-            false => -self.gap_tolerance(self.system.contact_of(point)),
-        };
-        gap < least
-            && law
-                .get()
-                .status(Status::Open, &end, &self.local(point, gap), 0)
-                != Status::Open
     }
 
     /// Gap of a contact that counts as none where a step ends, m.
@@ -284,155 +470,10 @@ impl Driver {
         100.0 * self.system.contacts[contact].tolerance
     }
 
-    /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
-    pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
-        let contacts = 0..self.system.contacts.len();
-        let worst = contacts.filter_map(|contact| self.worst_point_of(contact));
-        worst.reduce(|one, other| if other.1 > one.1 { other } else { one })
-    }
-
-    /// The same of a contact. Its forces are compared with the largest of its own.
-    fn worst_point_of(&self, contact: usize) -> Option<(usize, f64)> {
-        let tolerance = self.gap_tolerance(contact);
-        let points = self.system.points_of(contact);
-        let forces = self.next.interface.force[points.clone()].iter();
-        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
-        let mut worst: Option<(usize, f64)> = None;
-        for point in points {
-            if self.told(point) == Some(false) {
-                continue;
-            }
-            let (gap, rate) = self.weakly(point, self.now(point, true));
-            let status = self.next.interface.status[point];
-            let force = self.next.interface.force[point];
-            let law = self.law(self.system.point(point).0);
-            let defect = match status {
-                Status::Open if self.told(point).is_none() => match self.asks(point, gap, rate) {
-                    true => -gap / tolerance,
-                    false => 0.0,
-                },
-                _ => {
-                    let local = self.local(point, gap);
-                    let relation = match status {
-                        Status::Open => law.get().relation(Status::Closed, &local),
-                        _ => law.get().relation(status, &local),
-                    };
-                    let left = relation.gap * gap
-                        + relation.rate * rate
-                        + relation.compliance * force
-                        + relation.offset;
-                    let scale = relation.gap.abs() + relation.rate.abs() / self.dt;
-                    // a law that cuts tension off leaves a gap or a rate over where it would pull
-                    match status == Status::Open || law.get().clips() && force == 0.0 {
-                        true => (-left / scale / tolerance).max(0.0),
-                        false => (left / scale / tolerance).abs(),
-                    }
-                }
-            };
-            let cone = self.cone_defect(point, largest) / self.system.nonlinear.iteration.tolerance;
-            let defect = defect.max(self.slip_defect(point) / tolerance).max(cone);
-            if worst.is_none_or(|(_, most)| defect > most) {
-                worst = Some((point, defect));
-            }
-        }
-        worst
-    }
-
-    /// Nᵀ P of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
-    /// uses it.
-    pub(super) fn spread(&mut self) {
-        let f = &mut self.vectors.contact;
-        f.fill(0.0);
-        for point in self.active.within(0..self.system.points()) {
-            let force = self.next.interface.force[point];
-            if force != 0.0 {
-                self.pairing.rows.add_force(point, force, f);
-            }
-        }
-        self.spread_friction();
-        let (system, vectors) = (&*self.system, &mut self.vectors);
-        let pushes = !vectors.push.is_empty();
-        if let Some(stage) = self.impulses.as_mut().filter(|_| pushes) {
-            stage.hold(system, &mut vectors.contact);
-        }
-        for (i, push) in vectors.push.iter_mut().enumerate() {
-            *push = match system.fixed[i] {
-                true => 0.0,
-                false => vectors.contact[i] / system.mass.lumped[i],
-            };
-        }
-    }
-
-    /// Pairs all contacts as the state has them.
-    pub(super) fn pair_now(&mut self) {
-        self.rows_stand = false;
-        self.pairing.clear();
-        self.pairing.span = [0.0; 2];
-        self.vectors.end.clear();
-        self.vectors.place.clone_from(&self.state.motion.u);
-        self.begin_far();
-        for contact in 0..self.system.contacts.len() {
-            self.append(contact, self.state.time);
-        }
-        self.candidates.clear();
-    }
-
-    /// Begins a step of the contacts that do not look for what is far.
-    pub(super) fn begin_far(&mut self) {
-        self.far.forget_places();
-        let unknowns = &self.system.unknowns;
-        self.far.begin(unknowns, (&self.state.motion.v, self.dt));
-    }
-
-    /// Pairs again where the motion of the iteration leads further than contacts have looked.
-    pub(super) fn look_further(&mut self) {
-        if self.far.is_empty() {
-            return;
-        }
-        let Vectors {
-            x, push, place, dx, ..
-        } = &mut self.vectors;
-        let way = |map: &StepMap| map.displacement.since(&Row::START);
-        self.maps.whole(way, &self.state.motion, [x, push], place);
-        for (span, map) in self.maps.spans() {
-            for i in span {
-                place[i] += map.displacement.x * dx[i];
-            }
-        }
-        if !self.far.is_enough(&self.system.unknowns, place) {
-            // pairing uses the room of the forces of the iteration
-            let work = self.vectors.work.clone();
-            self.pair(true);
-            self.vectors.work = work;
-        }
-    }
-
-    /// Whether all is linear in the unknown, so that one iteration is all.
-    pub(super) fn is_affine(&self) -> bool {
-        !self.turns && !self.effective.iterates()
-    }
-
     /// Whether a contact is paired where the step is predicted to lead.
     pub(super) fn looks_ahead(&self, contact: usize) -> bool {
         let map = self.map_of(contact);
         let contact = &self.system.contacts[contact];
         !self.between() && looks_ahead(map, contact, self.law(contact))
-    }
-
-    /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
-    pub(super) fn move_gaps(&mut self, first: usize, to: Paired) {
-        let Vectors {
-            x,
-            push,
-            place,
-            work,
-            ..
-        } = &mut self.vectors;
-        let motion = &self.state.motion;
-        self.maps.whole(|map| to.row(map), motion, [x, push], work);
-        for (way, from) in work.iter_mut().zip(place) {
-            *way -= *from;
-        }
-        self.pairing.rows.move_from(first, work);
     }
 }

@@ -7,11 +7,11 @@
 use carom_bodies::{Body, Placement};
 use carom_contact::{Contact, Search};
 
-use super::Driver;
+use super::owners::{Attempt, Contacts};
 use crate::error::Error;
 use crate::system::System;
 
-impl Driver {
+impl Attempt {
     /// Deletes the elements that have reached their limit in the attempt.
     ///
     /// # Errors
@@ -40,18 +40,20 @@ impl Driver {
         }
         Ok(())
     }
+}
 
+impl Contacts {
     /// Brings the primary sides of contacts to the elements that are left in the state, a function of the state alone.
-    pub(super) fn renew_targets(&mut self) {
-        let deleted = self.state.ledger.deleted;
+    pub(super) fn renew_targets(&mut self, attempt: &Attempt) {
+        let deleted = attempt.state.ledger.deleted;
         if self.narrowed_for == deleted {
             return;
         }
         self.narrowed_for = deleted;
-        let system = &*self.system;
+        let system = &*attempt.system;
         self.narrowed.resize(system.contacts.len(), None);
         for (number, contact) in system.contacts.iter().enumerate() {
-            let faces = system.faces_left(number, &self.state.motion.history);
+            let faces = system.faces_left(number, &attempt.state.motion.history);
             self.narrowed[number] = faces.map(|faces| contact.with_faces(faces, &system.x));
             if self.narrowed[number].is_some() {
                 self.search[number] = Search::default();

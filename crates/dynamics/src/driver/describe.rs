@@ -3,6 +3,7 @@
 use carom_contact::Rows;
 
 use super::Driver;
+use super::owners::{Attempt, Contacts, Parts};
 use crate::interface::Candidate;
 use crate::step_map::StepMap;
 
@@ -10,69 +11,85 @@ impl Driver {
     /// What the laws of the candidates know; of adaptive steps their gaps without contact forces too. `tangents`: how many rows of
     /// tangents follow that of each point in the stacked rows; none where the points have rows of their own.
     pub(super) fn describe_candidates(&mut self, tangents: Option<u32>) {
-        let mut data = std::mem::take(&mut self.candidate_data);
+        let mut data = std::mem::take(&mut self.contacts.candidate_data);
         data.clear();
-        self.free_gaps.clear();
-        for k in 0..self.candidates.len() {
-            let point = self.candidates[k];
-            let last = self.next.interface.force[point as usize];
+        self.contacts.free_gaps.clear();
+        for k in 0..self.contacts.candidates.len() {
+            let point = self.contacts.candidates[k];
+            let last = self.attempt.next.interface.force[point as usize];
             let free = match tangents {
-                Some(tangents) => self.free_along(point * (1 + tangents), &self.stacked, last),
-                None => self.free_along(point, &self.pairing.rows, last),
+                Some(tangents) => self.parts.free_along(
+                    &self.attempt,
+                    point * (1 + tangents),
+                    &self.contacts.stacked,
+                    last,
+                ),
+                None => {
+                    self.parts
+                        .free_along(&self.attempt, point, &self.contacts.pairing.rows, last)
+                }
             };
-            data.push(self.candidate(point as usize, free));
-            if self.system.adaptive.is_some() {
-                let gap = self.gap_at_the_end(point as usize, free);
-                self.free_gaps.push(gap);
+            data.push(self.contacts.candidate(&self.attempt, point as usize, free));
+            if self.attempt.system.adaptive.is_some() {
+                let gap = self
+                    .contacts
+                    .gap_at_the_end(&self.attempt, point as usize, free);
+                self.contacts.free_gaps.push(gap);
             }
         }
-        self.candidate_data = data;
+        self.contacts.candidate_data = data;
     }
+}
 
+impl Contacts {
     /// What the law of a candidate knows. `free`: N x of the motion of the iteration without contact forces.
-    pub(super) fn candidate(&self, point: usize, free: f64) -> Candidate {
-        let contact = self.system.point(point).0;
-        let (gap, rate) = self.now(point, false);
-        let [closing, approach] = self.added(point, free);
+    pub(super) fn candidate(&self, attempt: &Attempt, point: usize, free: f64) -> Candidate {
+        let contact = attempt.system.point(point).0;
+        let (gap, rate) = self.now(attempt, point, false);
+        let [closing, approach] = attempt.added(point, free);
         Candidate {
-            law: *self.law(contact),
-            local: self.local(point, gap + closing),
+            law: *attempt.law(contact),
+            local: self.local(attempt, point, gap + closing),
             rate_free: rate + approach,
-            status: self.next.interface.status[point],
+            status: attempt.next.interface.status[point],
             faces_itself: contact.faces_itself(),
-            instant: self.factors(self.system.contact_of(point)),
-        }
-    }
-
-    /// N x of the motion of the iteration without contact forces, of the row of that number in `rows`.
-    ///
-    /// `last`: the force of the row an iteration ago, N. What is added to the response of points on a rigid body, so that they share their force, is about
-    /// that one in a static stage, where nothing but their iterations holds the body and its response is large: at the end nothing of it is left over.
-    pub(super) fn free_along(&self, number: u32, rows: &Rows, last: f64) -> f64 {
-        let mut free = self.effective.free(number, &self.vectors.half);
-        if self.floats() {
-            free -= self.effective.softened(number) * last;
-        }
-        match self.jumps() {
-            true => free + rows.product(number as usize, &self.vectors.jump),
-            false => free,
+            instant: attempt.factors(attempt.system.contact_of(point)),
         }
     }
 
     /// Gap of a point at the end of the step without contact forces, m.
-    fn gap_at_the_end(&self, point: usize, free: f64) -> f64 {
-        let number = self.system.contact_of(point);
+    pub(super) fn gap_at_the_end(&self, attempt: &Attempt, point: usize, free: f64) -> f64 {
+        let number = attempt.system.contact_of(point);
         let paired = self.paired_at(number);
         let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));
-        let xc = [&self.vectors.x[..], &self.vectors.push];
+        let xc = [&attempt.vectors.x[..], &attempt.vectors.push];
         let rows = &self.pairing.rows;
-        let motion = &self.state.motion;
-        let way = self.maps.on((rows, point), ahead, motion, xc);
-        rows.gap(point) + way + self.map_of(number).displacement.x * free
+        let motion = &attempt.state.motion;
+        let way = attempt.maps.on((rows, point), ahead, motion, xc);
+        rows.gap(point) + way + attempt.map_of(number).displacement.x * free
     }
+}
 
+impl Parts {
+    /// N x of the motion of the iteration without contact forces, of the row of that number in `rows`.
+    ///
+    /// `last`: the force of the row an iteration ago, N. What is added to the response of points on a rigid body, so that they share their force, is about
+    /// that one in a static stage, where nothing but their iterations holds the body and its response is large: at the end nothing of it is left over.
+    pub(super) fn free_along(&self, attempt: &Attempt, number: u32, rows: &Rows, last: f64) -> f64 {
+        let mut free = self.effective.free(number, &attempt.vectors.half);
+        if self.floats(attempt) {
+            free -= self.effective.softened(number) * last;
+        }
+        match attempt.jumps() {
+            true => free + rows.product(number as usize, &attempt.vectors.jump),
+            false => free,
+        }
+    }
+}
+
+impl Attempt {
     /// Factors of x in gap and rate that the law of a contact constrains, over those of the problem: of the first map.
-    fn factors(&self, contact: usize) -> [f64; 2] {
+    pub(super) fn factors(&self, contact: usize) -> [f64; 2] {
         let (map, [gap, rate]) = (self.map_of(contact), self.constrained(contact).1);
         if self.maps.only().is_some() {
             return [gap, rate];

@@ -14,6 +14,7 @@ use super::Driver;
 use super::forces::{Bodies, add_up};
 use super::leapfrog::{Direct, is_leapfrog};
 use super::loads::damping_rate;
+use super::owners::{Attempt, Contacts, Parts};
 use super::reported;
 use crate::assembly_energy::PartMotion;
 use crate::error::Error;
@@ -30,95 +31,80 @@ const UNKNOWNS: usize = 8192;
 impl Driver {
     /// Whether the attempt is such a step.
     pub(super) fn is_direct(&self) -> bool {
-        let leapfrog = match (self.maps.only(), &self.identity) {
+        let leapfrog = match (self.attempt.maps.only(), &self.attempt.identity) {
             (Some(map), Some(identity)) => is_leapfrog(map, identity),
             _ => false,
         };
         leapfrog
-            && self.direct.is_some()
-            && !self.maps.is_static()
-            && self.impulses.is_none()
-            && (self.has_links() || self.link_force.is_empty())
+            && self.explicit.direct.is_some()
+            && !self.attempt.maps.is_static()
+            && self.stages.impulses.is_none()
+            && (self.attempt.has_links() || self.links.force.is_empty())
     }
 
     /// Whether the motion of the attempt is known to be finite without a look at it.
     pub(super) fn is_known_finite(&self) -> bool {
-        self.direct.as_ref().is_some_and(|direct| direct.finite)
+        self.explicit
+            .direct
+            .as_ref()
+            .is_some_and(|direct| direct.finite)
     }
 
     /// Tells that an attempt of another kind begins.
     pub(super) fn leave_direct(&mut self) {
-        self.passage.forget();
-        if let Some(mut direct) = self.direct.take() {
-            self.forget_step(&mut direct);
-            self.direct = Some(direct);
+        self.contacts.passage.forget();
+        if let Some(mut direct) = self.explicit.direct.take() {
+            self.contacts.forget_step(&mut direct);
+            self.explicit.direct = Some(direct);
         } else {
-            self.active.leave();
+            self.contacts.active.leave();
         }
-    }
-
-    /// Forgets what the step before left for the next.
-    pub(super) fn forget_step(&mut self, direct: &mut Direct) {
-        (direct.clean, direct.finite) = (false, false);
-        (direct.pending, direct.ready) = (None, None);
-        self.active.leave();
     }
 
     /// Takes the attempt.
     pub(super) fn step_directly(&mut self) -> Result<(), Error> {
-        let Some(mut direct) = self.direct.take() else {
+        let Some(mut direct) = self.explicit.direct.take() else {
             return Ok(());
         };
         let clean = std::mem::take(&mut direct.clean);
         direct.finite = false;
-        let taken = match self.shared.take() {
+        let taken = match self.ranks.shared.take() {
             None => self.leap(&mut direct, clean),
             Some(mut shared) => {
                 let taken = self.step_on_ranks(&mut shared, &mut direct, clean);
-                self.shared = Some(shared);
+                self.ranks.shared = Some(shared);
                 taken
             }
         };
-        self.direct = Some(direct);
+        self.explicit.direct = Some(direct);
         taken
     }
 
     fn leap(&mut self, direct: &mut Direct, clean: bool) -> Result<(), Error> {
-        let (begin, before) = (Instant::now(), self.phases);
-        if !self.weak.none() {
-            self.take_matrices()?;
+        let (begin, before) = (Instant::now(), self.attempt.phases);
+        if !self.contacts.weak.none() {
+            self.parts.take_matrices(&mut self.attempt)?;
         }
-        self.begin_leap(direct, clean);
-        self.place_end(direct);
-        self.forces_of_end()?;
-        let loads = self.loads_of_end(direct.loaded);
-        self.damping_of_end();
-        self.hold_directly(direct, |driver, i| driver.left(loads, i))?;
-        self.follow_interface();
+        self.parts.begin_leap(&mut self.attempt, direct, clean);
+        self.attempt.place_end(direct);
+        self.parts.forces_of_end(&mut self.attempt)?;
+        let loads = self.attempt.loads_of_end(direct.loaded);
+        self.parts.damping_of_end(&mut self.attempt);
+        self.hold_directly(direct, |driver, i| driver.attempt.left(loads, i))?;
+        self.contacts.follow_interface(&mut self.attempt);
         self.touch(direct, loads)?;
-        self.count_contact(begin, before);
+        self.attempt.count_contact(begin, before);
         let begin = Instant::now();
         self.end_motion(direct, loads);
         direct.sum_parts();
-        let sums = direct.total(self.system.axisymmetric);
+        let sums = direct.total(self.attempt.system.axisymmetric);
         self.report_supports(loads, &|_| true);
         self.know_end(&sums, direct);
-        self.end_points();
+        self.contacts.end_points(&mut self.attempt);
         self.report_contacts();
         self.end_directly(&sums, direct);
-        self.phases.balance += begin.elapsed();
+        self.attempt.phases.balance += begin.elapsed();
         Ok(())
-    }
-
-    /// Begins the step; `clean`: whether it is known which blocks have contact forces.
-    pub(super) fn begin_leap(&mut self, direct: &mut Direct, clean: bool) {
-        self.residuals.clear();
-        self.residuals.push(0.0);
-        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
-        direct.clear(clean, self.system.dim, &mut self.next.motion.contact_force);
-        if !clean {
-            self.vectors.x.fill(0.0);
-        }
     }
 
     /// What the next steps know of the end.
@@ -132,11 +118,14 @@ impl Driver {
         self.balance_directly(sums, direct);
         self.record_links();
         self.record_contacts();
-        let records = &self.next.records.contacts;
+        let records = &self.attempt.next.records.contacts;
         let momenta = |part: usize| direct.parts[part].momentum.linear;
-        self.next.exchange.close(&self.system, momenta, records);
+        self.attempt
+            .next
+            .exchange
+            .close(&self.attempt.system, momenta, records);
         self.work_of_obstacles();
-        let inertia = self.inertia_of_identity();
+        let inertia = self.attempt.inertia_of_identity();
         let part = |part: usize| {
             let sums = &direct.parts[part];
             PartMotion {
@@ -148,144 +137,245 @@ impl Driver {
                 of_scheme: inertia * sums.acceleration[1],
             }
         };
-        let mut motions = std::mem::take(&mut self.works.motions);
+        let mut motions = std::mem::take(&mut self.balances.works.motions);
         motions.clear();
         motions.extend((0..direct.parts.len()).map(part));
         self.add_to_assemblies(motions);
         self.look_at_the_end();
     }
 
-    /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.
-    pub(super) fn place_end(&mut self, direct: &mut Direct) {
-        let (row, motion) = (self.maps.first().displacement, &self.state.motion);
-        direct.pending = None;
-        if direct.ready.take() == Some(row) {
-            std::mem::swap(&mut self.next.motion.u, &mut direct.ahead);
-            self.next.motion.frames.clone_from(&motion.frames);
-            return;
-        }
-        let start = Known::from(motion);
-        let ends = self.next.motion.u.par_chunks_mut(UNKNOWNS).enumerate();
-        ends.for_each(|(chunk, end)| {
-            let first = chunk * UNKNOWNS;
-            row.known(start.within(first..first + end.len()), end);
-        });
-        self.next.motion.frames.clone_from(&motion.frames);
-    }
-
-    /// Internal forces and histories of the end.
-    fn forces_of_end(&mut self) -> Result<(), Error> {
-        let begin = Instant::now();
-        self.force_sweeps += 1;
-        let motion = &mut self.next.motion;
-        motion.internal_force.fill(0.0);
-        let at = Bodies {
-            u: &motion.u,
-            v: &[],
-            from: None,
-            frames: &self.state.motion.frames,
-            history: &self.state.motion.history,
-        };
-        let out = (&mut motion.history[..], &mut motion.internal_force[..]);
-        let dt = self.dt;
-        self.stored = add_up(&self.system, &at, |_| dt, out, &mut self.scratch)?;
-        self.phases.forces += begin.elapsed();
-        Ok(())
-    }
-
-    /// Loads at the end: those of `load` where they vary, otherwise what the dead loads are multiplied with.
-    pub(super) fn loads_of_end(&mut self, loaded: bool) -> Loads {
-        if !self.system.nonlinear.loads.is_empty() {
-            self.vectors.place.clone_from(&self.next.motion.u);
-            self.vectors.load.resize(self.system.unknowns(), 0.0);
-            self.evaluate_loads_of_step();
-            return Loads::Varying;
-        }
-        let time = self.state.time;
-        let ramp = [time, time + self.dt].map(|time| self.system.nonlinear.ramp(time));
-        if loaded {
-            Loads::Dead(ramp)
-        } else {
-            Loads::None
-        }
-    }
-
-    /// Forces of damping, at the velocity that is known before the forces.
-    fn damping_of_end(&mut self) {
-        if !self.system.has_damping() {
-            return;
-        }
-        let (row, start) = (
-            damping_rate(self.maps.first()),
-            Known::from(&self.state.motion),
-        );
-        let (unknowns, vectors) = (self.system.unknowns(), &mut self.vectors);
-        for vector in [&mut vectors.rate, &mut vectors.damping, &mut vectors.work] {
-            vector.resize(unknowns, 0.0);
-        }
-        let rates = vectors.rate.par_chunks_mut(UNKNOWNS).enumerate();
-        rates.for_each(|(chunk, rates)| {
-            let first = chunk * UNKNOWNS;
-            row.known(start.within(first..first + rates.len()), rates);
-        });
-        self.evaluate_damping();
-    }
-
     /// Forces of the contacts.
     pub(super) fn touch(&mut self, direct: &mut Direct, loads: Loads) -> Result<(), Error> {
-        self.vectors.jumps = false;
-        if self.system.contacts.is_empty() {
-            self.candidates.clear();
+        self.attempt.vectors.jumps = false;
+        if self.attempt.system.contacts.is_empty() {
+            self.contacts.candidates.clear();
             return Ok(());
         }
-        self.vectors.ahead.clear();
-        self.pair_near();
+        self.attempt.vectors.ahead.clear();
+        self.contacts.pair_near(&mut self.attempt);
         self.choose_candidates();
-        if self.candidates.is_empty() {
-            self.release();
+        if self.contacts.candidates.is_empty() {
+            self.contacts.release(&mut self.attempt);
             return Ok(());
         }
-        match self.weak.none() {
+        match self.contacts.weak.none() {
             true => {
                 let free = |driver: &Driver, i: usize| {
-                    driver.left(loads, i) / driver.system.mass.lumped[i]
+                    driver.attempt.left(loads, i) / driver.attempt.system.mass.lumped[i]
                 };
                 self.solve_apart(&mut direct.apart, free)?;
             }
             false => {
-                self.stack();
-                self.vectors.make_room(&self.state.motion);
-                for i in 0..self.system.unknowns() {
-                    self.vectors.residual[i] = self.left(loads, i);
+                self.contacts.stack(&self.attempt);
+                self.attempt.vectors.make_room(&self.attempt.state.motion);
+                for i in 0..self.attempt.system.unknowns() {
+                    self.attempt.vectors.residual[i] = self.attempt.left(loads, i);
                 }
                 self.solve_interface()?;
             }
         }
-        self.spread_directly(direct);
+        self.contacts.spread_directly(&mut self.attempt, direct);
         Ok(())
     }
 
-    /// What loads, internal forces and those beside them leave at the end on an unknown, N; zero on held ones.
-    fn left(&self, loads: Loads, i: usize) -> f64 {
-        let damping = self.vectors.damping.get(i).unwrap_or(&0.0);
-        let inside = self.next.motion.internal_force[i] + damping;
-        match loads {
-            _ if self.system.fixed[i] => 0.0,
-            Loads::None => -inside,
-            Loads::Dead([_, factor]) => factor * self.system.load[i] - inside,
-            Loads::Varying => self.vectors.load[i] - inside,
+    /// Accelerations and velocities of the end, and the sums of the blocks.
+    pub(super) fn end_motion(&mut self, direct: &mut Direct, loads: Loads) {
+        let system = Arc::clone(&self.attempt.system);
+        let map = self.attempt.maps.first();
+        let means = [map.impulse.old, map.impulse.new];
+        let moves = system.is_nonlinear();
+        let shapes = &self.attempt.state.shapes.bodies;
+        self.explicit.rates.refer(&system.part_of_body, shapes);
+        let damped = self.attempt.has_forces_beside();
+        let (old, new) = (&self.attempt.state.motion, &mut self.attempt.next.motion);
+        let varying = &self.attempt.vectors.load[..];
+        let known = |kept: &'_ [f64]| !kept.is_empty();
+        let kept = &self.attempt.state.forces;
+        let before = if known(&kept.load) {
+            &kept.load[..]
+        } else {
+            varying
+        };
+        let damping = &self.attempt.vectors.damping[..];
+        let before_damping = if known(&kept.damping) {
+            &kept.damping[..]
+        } else {
+            damping
+        };
+        let none = (&system.load[..], 0.0);
+        let update = Update {
+            system: &system,
+            u: &new.u,
+            mass: &direct.mass,
+            ahead: map.displacement,
+            reference: &self.explicit.rates.reference,
+            f: [&old.internal_force, &new.internal_force],
+            v: &old.v,
+            a: &old.a,
+            load: match loads {
+                Loads::None => damped.then_some([none; 2]),
+                Loads::Dead(factors) => Some(factors.map(|factor| (&system.load[..], factor))),
+                Loads::Varying => Some([(before, 1.0), (varying, 1.0)]),
+            },
+            damping: damped.then_some([(before_damping, 1.0), (damping, 1.0)]),
+            contact: [&old.contact_force, &new.contact_force],
+            way: map.displacement.since(&Row::START),
+            velocity: map.velocity,
+            weights: [means, if moves { means } else { [0.0, 1.0] }],
+            moves,
+        };
+        let out = [&mut direct.ahead[..], &mut new.v, &mut new.a];
+        update.run(&direct.blocks, &mut direct.sums, out);
+        direct.pending = Some(map.displacement);
+        let forces = &mut self.attempt.next.forces;
+        forces.each_mut().into_iter().for_each(Vec::clear);
+        if let Loads::Varying = loads {
+            forces.load.extend_from_slice(&self.attempt.vectors.load);
+        }
+        if damped {
+            forces
+                .damping
+                .extend_from_slice(&self.attempt.vectors.damping);
         }
     }
 
-    /// Whether forces beside the internal ones depend on the motion: damping, less the forces of links.
-    pub(super) fn has_forces_beside(&self) -> bool {
-        self.system.has_damping() || self.has_links()
+    /// Forces of the named supports at the end: what is held has no acceleration. Those on nodes that do not `count` are left out.
+    pub(super) fn report_supports(&mut self, loads: Loads, count: &dyn Fn(usize) -> bool) {
+        let motion = &self.attempt.next.motion;
+        let load = |i: usize| match loads {
+            Loads::None => 0.0,
+            Loads::Dead([_, factor]) => factor * self.attempt.system.load[i],
+            Loads::Varying => self.attempt.vectors.load[i],
+        };
+        let displacement = self.attempt.system.is_nonlinear().then_some(&motion.u[..]);
+        let at = (&self.attempt.state.motion.frames[..], displacement);
+        let unknowns = &self.attempt.system.unknowns;
+        reported::write(
+            &mut self.balances.reactions,
+            &self.attempt.system,
+            at,
+            |i| {
+                if !count(unknowns.node(i) as usize) {
+                    return 0.0;
+                }
+                let damping = self.attempt.vectors.damping.get(i).unwrap_or(&0.0);
+                motion.internal_force[i] + damping - load(i) - motion.contact_force[i]
+            },
+        );
+    }
+
+    /// Energy and momentum of the step.
+    fn balance_directly(&mut self, sums: &Sums, direct: &Direct) {
+        let (system, parts) = (Arc::clone(&self.attempt.system), &direct.parts);
+        let identity = self.attempt.identity_of_ledger();
+        let map = *self.attempt.maps.first();
+        let weights = [[map.impulse.old, map.impulse.new]];
+        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
+        let forces = [&old.link_force[..], &new.link_force];
+        let links = direct.links.work(weights[0], forces, [&old.u, &new.u]);
+        let link_norm = direct.links.norm(&new.link_force);
+        let of_contacts = self.contacts.of_contacts.iter();
+        let friction = -of_contacts.map(|of| of.report.friction_loss).sum::<f64>();
+        let obstacles = self.obstacle_work(&weights, &|contact| {
+            self.contacts.of_contacts[contact].pushed
+        });
+        let [inertia, internal, load, touch, beside] = sums.works;
+        let stored = self.parts.stored;
+        let energies = Energies {
+            kinetic: 0.5 * sums.velocity,
+            strain: stored.strain,
+            acceleration: sums.acceleration[1],
+            memory: 0.0,
+            lagged: 0.0,
+            momentum: sums.momentum,
+        };
+        let before = identity.inertia * sums.acceleration[0];
+        let start = &self.attempt.state.ledger.balance;
+        let gained = energies.kinetic - start.kinetic + energies.of_scheme(&identity) - before;
+        let kept = energies.strain - start.strain + stored.hardening - start.hardening;
+        let one = Impulse::weights(0.0, 1.0);
+        // forces that are means already, or those of the end
+        let [impulse, contact_impulse] = match system.is_nonlinear() {
+            true => [&one, &one],
+            false => [&map.impulse, &map.contact_impulse],
+        };
+        let mut dissipation = Squares::default().dissipation(&identity);
+        let mut beyond = None;
+        if system.is_nonlinear() {
+            dissipation = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
+            self.parts.left_over = self.attempt.system.nonlinear.iteration.tolerance
+                * scale(sums, self.attempt.dt).max(link_norm);
+            let nodes = system.nodes_of_whole as f64;
+            beyond = Some(Beyond {
+                work_supports: 0.0,
+                work_obstacles: obstacles,
+                dissipation_material: stored.dissipated,
+                // what is beside internal forces is damping less the forces of links
+                dissipation_damping: beside + links,
+                dissipation_friction: -friction,
+                dissipation_viscosity: stored.viscous,
+                hardening: stored.hardening,
+                hourglass: stored.hourglass,
+                tolerated: Tolerated {
+                    energy: self.parts.left_over * sums.way.sqrt(),
+                    momentum: self.parts.left_over * nodes.sqrt() * self.attempt.dt,
+                },
+            });
+        }
+        let [loads, contacts, supports, beside] = sums.forces;
+        self.attempt.next.ledger = self.attempt.state.ledger.after(&StepTerms {
+            dt: self.attempt.dt,
+            is_static: false,
+            identity: &identity,
+            impulse,
+            contact_impulse,
+            energies,
+            work_loads: load,
+            work_contacts: touch - friction - obstacles,
+            work_links: links,
+            dissipation,
+            energy_of_scheme: Some(before),
+            forces: OutsideForces {
+                loads,
+                contacts,
+                supports,
+                held: Resultant::default(),
+                links: beside.reversed(),
+            },
+            kick: Resultant::default(),
+            beyond,
+            rounding: Tolerated::default(),
+        });
+        let exchange = &mut self.attempt.next.exchange;
+        exchange.follow(&self.attempt.state.exchange);
+        let apart = system.is_nonlinear();
+        let outside = |part: usize| {
+            let [own, held] = parts[part].outside;
+            match apart {
+                true => own,
+                false => [0, 1, 2].map(|i| own[i] + held[i]),
+            }
+        };
+        exchange.add_sums(&system, (0, self.attempt.dt, |_| map.impulse), outside);
+        if apart {
+            let held = |part: usize| parts[part].outside[1];
+            exchange.add_sums(&system, (1, self.attempt.dt, |_| map.contact_impulse), held);
+        }
+    }
+}
+
+impl Contacts {
+    /// Forgets what the step before left for the next.
+    pub(super) fn forget_step(&mut self, direct: &mut Direct) {
+        (direct.clean, direct.finite) = (false, false);
+        (direct.pending, direct.ready) = (None, None);
+        self.active.leave();
     }
 
     /// Adds the forces of the points to those of the nodes.
-    fn spread_directly(&mut self, direct: &mut Direct) {
-        let (system, interface) = (&*self.system, &self.next.interface);
-        let forces = &mut self.next.motion.contact_force;
+    pub(super) fn spread_directly(&self, attempt: &mut Attempt, direct: &mut Direct) {
+        let (system, interface) = (&*attempt.system, &attempt.next.interface);
+        let forces = &mut attempt.next.motion.contact_force;
         let mut add = |rows: &Rows, point: usize, force: f64| {
             if force == 0.0 {
                 return;
@@ -309,189 +399,125 @@ impl Driver {
         }
     }
 
-    /// Accelerations and velocities of the end, and the sums of the blocks.
-    pub(super) fn end_motion(&mut self, direct: &mut Direct, loads: Loads) {
-        let system = Arc::clone(&self.system);
-        let map = self.maps.first();
-        let means = [map.impulse.old, map.impulse.new];
-        let moves = system.is_nonlinear();
-        let shapes = &self.state.shapes.bodies;
-        self.rates.refer(&system.part_of_body, shapes);
-        let damped = self.has_forces_beside();
-        let (old, new) = (&self.state.motion, &mut self.next.motion);
-        let varying = &self.vectors.load[..];
-        let known = |kept: &'_ [f64]| !kept.is_empty();
-        let kept = &self.state.forces;
-        let before = if known(&kept.load) {
-            &kept.load[..]
-        } else {
-            varying
-        };
-        let damping = &self.vectors.damping[..];
-        let before_damping = if known(&kept.damping) {
-            &kept.damping[..]
-        } else {
-            damping
-        };
-        let none = (&system.load[..], 0.0);
-        let update = Update {
-            system: &system,
-            u: &new.u,
-            mass: &direct.mass,
-            ahead: map.displacement,
-            reference: &self.rates.reference,
-            f: [&old.internal_force, &new.internal_force],
-            v: &old.v,
-            a: &old.a,
-            load: match loads {
-                Loads::None => damped.then_some([none; 2]),
-                Loads::Dead(factors) => Some(factors.map(|factor| (&system.load[..], factor))),
-                Loads::Varying => Some([(before, 1.0), (varying, 1.0)]),
-            },
-            damping: damped.then_some([(before_damping, 1.0), (damping, 1.0)]),
-            contact: [&old.contact_force, &new.contact_force],
-            way: map.displacement.since(&Row::START),
-            velocity: map.velocity,
-            weights: [means, if moves { means } else { [0.0, 1.0] }],
-            moves,
-        };
-        let out = [&mut direct.ahead[..], &mut new.v, &mut new.a];
-        update.run(&direct.blocks, &mut direct.sums, out);
-        direct.pending = Some(map.displacement);
-        let forces = &mut self.next.forces;
-        forces.each_mut().into_iter().for_each(Vec::clear);
-        if let Loads::Varying = loads {
-            forces.load.extend_from_slice(&self.vectors.load);
-        }
-        if damped {
-            forces.damping.extend_from_slice(&self.vectors.damping);
-        }
-    }
-
-    /// Forces of the named supports at the end: what is held has no acceleration. Those on nodes that do not `count` are left out.
-    pub(super) fn report_supports(&mut self, loads: Loads, count: &dyn Fn(usize) -> bool) {
-        let motion = &self.next.motion;
-        let load = |i: usize| match loads {
-            Loads::None => 0.0,
-            Loads::Dead([_, factor]) => factor * self.system.load[i],
-            Loads::Varying => self.vectors.load[i],
-        };
-        let displacement = self.system.is_nonlinear().then_some(&motion.u[..]);
-        let at = (&self.state.motion.frames[..], displacement);
-        let unknowns = &self.system.unknowns;
-        reported::write(&mut self.reactions, &self.system, at, |i| {
-            if !count(unknowns.node(i) as usize) {
-                return 0.0;
-            }
-            let damping = self.vectors.damping.get(i).unwrap_or(&0.0);
-            motion.internal_force[i] + damping - load(i) - motion.contact_force[i]
-        });
-    }
-
     /// Gaps, rates and memories of the contact points.
-    pub(super) fn end_points(&mut self) {
+    pub(super) fn end_points(&self, attempt: &mut Attempt) {
         // the unknown is the acceleration
-        std::mem::swap(&mut self.vectors.x, &mut self.next.motion.a);
-        self.end_interface();
-        std::mem::swap(&mut self.vectors.x, &mut self.next.motion.a);
-        self.crush();
+        std::mem::swap(&mut attempt.vectors.x, &mut attempt.next.motion.a);
+        self.end_interface(attempt);
+        std::mem::swap(&mut attempt.vectors.x, &mut attempt.next.motion.a);
+        self.crush(attempt);
+    }
+}
+
+impl Parts {
+    /// Begins the step; `clean`: whether it is known which blocks have contact forces.
+    pub(super) fn begin_leap(&mut self, attempt: &mut Attempt, direct: &mut Direct, clean: bool) {
+        self.residuals.clear();
+        self.residuals.push(0.0);
+        (self.pace.age, self.pace.fresh) = (0, attempt.state.control.pace);
+        direct.clear(
+            clean,
+            attempt.system.dim,
+            &mut attempt.next.motion.contact_force,
+        );
+        if !clean {
+            attempt.vectors.x.fill(0.0);
+        }
     }
 
-    /// Energy and momentum of the step.
-    fn balance_directly(&mut self, sums: &Sums, direct: &Direct) {
-        let (system, parts) = (Arc::clone(&self.system), &direct.parts);
-        let identity = self.identity_of_ledger();
-        let map = *self.maps.first();
-        let weights = [[map.impulse.old, map.impulse.new]];
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let forces = [&old.link_force[..], &new.link_force];
-        let links = direct.links.work(weights[0], forces, [&old.u, &new.u]);
-        let link_norm = direct.links.norm(&new.link_force);
-        let of_contacts = self.of_contacts.iter();
-        let friction = -of_contacts.map(|of| of.report.friction_loss).sum::<f64>();
-        let obstacles = self.obstacle_work(&weights, &|contact| self.of_contacts[contact].pushed);
-        let [inertia, internal, load, touch, beside] = sums.works;
-        let stored = self.stored;
-        let energies = Energies {
-            kinetic: 0.5 * sums.velocity,
-            strain: stored.strain,
-            acceleration: sums.acceleration[1],
-            memory: 0.0,
-            lagged: 0.0,
-            momentum: sums.momentum,
+    /// Internal forces and histories of the end.
+    pub(super) fn forces_of_end(&mut self, attempt: &mut Attempt) -> Result<(), Error> {
+        let begin = Instant::now();
+        self.force_sweeps += 1;
+        let motion = &mut attempt.next.motion;
+        motion.internal_force.fill(0.0);
+        let at = Bodies {
+            u: &motion.u,
+            v: &[],
+            from: None,
+            frames: &attempt.state.motion.frames,
+            history: &attempt.state.motion.history,
         };
-        let before = identity.inertia * sums.acceleration[0];
-        let start = &self.state.ledger.balance;
-        let gained = energies.kinetic - start.kinetic + energies.of_scheme(&identity) - before;
-        let kept = energies.strain - start.strain + stored.hardening - start.hardening;
-        let one = Impulse::weights(0.0, 1.0);
-        // forces that are means already, or those of the end
-        let [impulse, contact_impulse] = match system.is_nonlinear() {
-            true => [&one, &one],
-            false => [&map.impulse, &map.contact_impulse],
-        };
-        let mut dissipation = Squares::default().dissipation(&identity);
-        let mut beyond = None;
-        if system.is_nonlinear() {
-            dissipation = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
-            self.left_over =
-                self.system.nonlinear.iteration.tolerance * scale(sums, self.dt).max(link_norm);
-            let nodes = system.nodes_of_whole as f64;
-            beyond = Some(Beyond {
-                work_supports: 0.0,
-                work_obstacles: obstacles,
-                dissipation_material: stored.dissipated,
-                // what is beside internal forces is damping less the forces of links
-                dissipation_damping: beside + links,
-                dissipation_friction: -friction,
-                dissipation_viscosity: stored.viscous,
-                hardening: stored.hardening,
-                hourglass: stored.hourglass,
-                tolerated: Tolerated {
-                    energy: self.left_over * sums.way.sqrt(),
-                    momentum: self.left_over * nodes.sqrt() * self.dt,
-                },
-            });
+        let out = (&mut motion.history[..], &mut motion.internal_force[..]);
+        let dt = attempt.dt;
+        self.stored = add_up(&attempt.system, &at, |_| dt, out, &mut self.scratch)?;
+        attempt.phases.forces += begin.elapsed();
+        Ok(())
+    }
+
+    /// Forces of damping, at the velocity that is known before the forces.
+    pub(super) fn damping_of_end(&mut self, attempt: &mut Attempt) {
+        if !attempt.system.has_damping() {
+            return;
         }
-        let [loads, contacts, supports, beside] = sums.forces;
-        self.next.ledger = self.state.ledger.after(&StepTerms {
-            dt: self.dt,
-            is_static: false,
-            identity: &identity,
-            impulse,
-            contact_impulse,
-            energies,
-            work_loads: load,
-            work_contacts: touch - friction - obstacles,
-            work_links: links,
-            dissipation,
-            energy_of_scheme: Some(before),
-            forces: OutsideForces {
-                loads,
-                contacts,
-                supports,
-                held: Resultant::default(),
-                links: beside.reversed(),
-            },
-            kick: Resultant::default(),
-            beyond,
-            rounding: Tolerated::default(),
+        let (row, start) = (
+            damping_rate(attempt.maps.first()),
+            Known::from(&attempt.state.motion),
+        );
+        let (unknowns, vectors) = (attempt.system.unknowns(), &mut attempt.vectors);
+        for vector in [&mut vectors.rate, &mut vectors.damping, &mut vectors.work] {
+            vector.resize(unknowns, 0.0);
+        }
+        let rates = vectors.rate.par_chunks_mut(UNKNOWNS).enumerate();
+        rates.for_each(|(chunk, rates)| {
+            let first = chunk * UNKNOWNS;
+            row.known(start.within(first..first + rates.len()), rates);
         });
-        let exchange = &mut self.next.exchange;
-        exchange.follow(&self.state.exchange);
-        let apart = system.is_nonlinear();
-        let outside = |part: usize| {
-            let [own, held] = parts[part].outside;
-            match apart {
-                true => own,
-                false => [0, 1, 2].map(|i| own[i] + held[i]),
-            }
-        };
-        exchange.add_sums(&system, (0, self.dt, |_| map.impulse), outside);
-        if apart {
-            let held = |part: usize| parts[part].outside[1];
-            exchange.add_sums(&system, (1, self.dt, |_| map.contact_impulse), held);
+        self.evaluate_damping(attempt);
+    }
+}
+
+impl Attempt {
+    /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.
+    pub(super) fn place_end(&mut self, direct: &mut Direct) {
+        let (row, motion) = (self.maps.first().displacement, &self.state.motion);
+        direct.pending = None;
+        if direct.ready.take() == Some(row) {
+            std::mem::swap(&mut self.next.motion.u, &mut direct.ahead);
+            self.next.motion.frames.clone_from(&motion.frames);
+            return;
         }
+        let start = Known::from(motion);
+        let ends = self.next.motion.u.par_chunks_mut(UNKNOWNS).enumerate();
+        ends.for_each(|(chunk, end)| {
+            let first = chunk * UNKNOWNS;
+            row.known(start.within(first..first + end.len()), end);
+        });
+        self.next.motion.frames.clone_from(&motion.frames);
+    }
+
+    /// Loads at the end: those of `load` where they vary, otherwise what the dead loads are multiplied with.
+    pub(super) fn loads_of_end(&mut self, loaded: bool) -> Loads {
+        if !self.system.nonlinear.loads.is_empty() {
+            self.vectors.place.clone_from(&self.next.motion.u);
+            self.vectors.load.resize(self.system.unknowns(), 0.0);
+            self.evaluate_loads_of_step();
+            return Loads::Varying;
+        }
+        let time = self.state.time;
+        let ramp = [time, time + self.dt].map(|time| self.system.nonlinear.ramp(time));
+        if loaded {
+            Loads::Dead(ramp)
+        } else {
+            Loads::None
+        }
+    }
+
+    /// What loads, internal forces and those beside them leave at the end on an unknown, N; zero on held ones.
+    pub(super) fn left(&self, loads: Loads, i: usize) -> f64 {
+        let damping = self.vectors.damping.get(i).unwrap_or(&0.0);
+        let inside = self.next.motion.internal_force[i] + damping;
+        match loads {
+            _ if self.system.fixed[i] => 0.0,
+            Loads::None => -inside,
+            Loads::Dead([_, factor]) => factor * self.system.load[i] - inside,
+            Loads::Varying => self.vectors.load[i] - inside,
+        }
+    }
+
+    /// Whether forces beside the internal ones depend on the motion: damping, less the forces of links.
+    pub(super) fn has_forces_beside(&self) -> bool {
+        self.system.has_damping() || self.has_links()
     }
 }
 

@@ -9,6 +9,7 @@ use super::Driver;
 use super::direct_links::DirectLinks;
 use super::leapfrog::Direct;
 use super::linking::of_mass;
+use super::owners::{Attempt, Links};
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::system::LinkRow;
@@ -24,10 +25,10 @@ impl Driver {
         direct: &mut Direct,
         left: impl Fn(&Driver, usize) -> f64,
     ) -> Result<(), Error> {
-        if !self.has_links() {
+        if !self.attempt.has_links() {
             return Ok(());
         }
-        let system = Arc::clone(&self.system);
+        let system = Arc::clone(&self.attempt.system);
         let links = &mut direct.links;
         let mut condensed = match links.condensed.take() {
             Some(condensed) => condensed,
@@ -39,7 +40,7 @@ impl Driver {
         links.free.resize(system.unknowns(), 0.0);
         if !system.has_damping() {
             // what the step before left there
-            let beside = &mut self.vectors.damping;
+            let beside = &mut self.attempt.vectors.damping;
             beside.resize(system.unknowns(), 0.0);
             for &unknown in &links.unknowns {
                 beside[unknown as usize] = 0.0;
@@ -52,7 +53,10 @@ impl Driver {
                 false => left(self, i) / system.mass.lumped[i],
             };
         }
-        let (motion, known) = (&self.state.motion, self.maps.link_row(self.maps.first()));
+        let (motion, known) = (
+            &self.attempt.state.motion,
+            self.attempt.maps.link_row(self.attempt.maps.first()),
+        );
         let of_row = |row: &LinkRow| -> f64 {
             let term = |&(dof, c): &(u32, f64)| {
                 let i = dof as usize;
@@ -61,19 +65,21 @@ impl Driver {
             };
             row.iter().map(term).sum::<f64>() / -known.x
         };
-        let now = &mut self.multipliers.now;
+        let now = &mut self.links.multipliers.now;
         now.clear();
         now.extend(system.link_rows.iter().map(of_row));
         condensed.solve(now);
         links.condensed = Some(condensed);
-        self.spread_links(&direct.links);
+        self.links.spread_links(&mut self.attempt, &direct.links);
         Ok(())
     }
+}
 
+impl Links {
     /// Forces of the multipliers, and their part of the forces beside internal ones.
-    fn spread_links(&mut self, links: &DirectLinks) {
-        let system = &*self.system;
-        let force = &mut self.link_force;
+    pub(super) fn spread_links(&mut self, attempt: &mut Attempt, links: &DirectLinks) {
+        let system = &*attempt.system;
+        let force = &mut self.force;
         force.resize(system.unknowns(), 0.0);
         for &unknown in &links.unknowns {
             force[unknown as usize] = 0.0;
@@ -83,7 +89,10 @@ impl Driver {
                 force[dof as usize] += c * l;
             }
         }
-        let (beside, end) = (&mut self.vectors.damping, &mut self.next.motion.link_force);
+        let (beside, end) = (
+            &mut attempt.vectors.damping,
+            &mut attempt.next.motion.link_force,
+        );
         end.resize(system.unknowns(), 0.0);
         for &unknown in &links.unknowns {
             let i = unknown as usize;

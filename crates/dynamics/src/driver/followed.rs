@@ -9,9 +9,9 @@
 //! dynamics where that is shorter. At the start itself it is `2 (ū(t + h) - ū(t) - h v)/h²`, v the rate before. Both are of second order, and exact where
 //! ū is a parabola. It is zero again before the next step begins.
 
-use super::Driver;
+use super::owners::Attempt;
 
-impl Driver {
+impl Attempt {
     /// Writes the accelerations of the state at the end of a step of `dt`, or, where that is zero, at the start of the dynamics.
     pub(super) fn show_followed(&mut self, dt: f64) {
         // static steps have no accelerations

@@ -6,7 +6,8 @@ use carom_algebra::rotation::Rotation;
 use carom_bodies::{Placement, Scratch, Stored};
 
 use super::loads::factor;
-use super::{Driver, Vectors, Which};
+use super::owners::{Attempt, Parts};
+use super::{Vectors, Which};
 use crate::error::Error;
 use crate::step_map::StepMap;
 use crate::system::{Maps, NumberedForce, System};
@@ -51,7 +52,7 @@ pub(super) fn add_up(
     Ok(sum)
 }
 
-impl Driver {
+impl Attempt {
     /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
     pub(super) fn evaluate_loads_of_step(&mut self) {
         let (start, dt) = (self.state.time, self.dt);
@@ -78,7 +79,7 @@ impl Driver {
     }
 
     /// The same, of pressures the mean on the way of the step to `place` if `between`.
-    fn evaluate_loads_over(&mut self, time: f64, between: bool) {
+    pub(super) fn evaluate_loads_over(&mut self, time: f64, between: bool) {
         let system = &*self.system;
         let from = between.then_some(&self.state.motion.u[..]);
         let ramp = system.nonlinear.ramp(time);
@@ -105,15 +106,17 @@ impl Driver {
         }
         self.add_bolts(time);
     }
+}
 
+impl Parts {
     /// Forces of dashpots and of Rayleigh's damping at the velocity of the iteration, N.
-    pub(super) fn evaluate_damping(&mut self) {
-        let system = &*self.system;
-        let vectors = &mut self.vectors;
+    pub(super) fn evaluate_damping(&mut self, attempt: &mut Attempt) {
+        let system = &*attempt.system;
+        let vectors = &mut attempt.vectors;
         if !system.has_damping() {
             return;
         }
-        if self.maps.is_static() {
+        if attempt.maps.is_static() {
             vectors.damping.fill(0.0);
             return;
         }
@@ -145,26 +148,27 @@ impl Driver {
     /// An element turned inside out, a material without stress.
     pub(super) fn internal(
         &mut self,
+        attempt: &mut Attempt,
         (place, from): (Which, bool),
         dt: impl Fn(&StepMap) -> f64,
     ) -> Result<Stored, Error> {
         let begin = Instant::now();
-        let system = &*self.system;
+        let system = &*attempt.system;
         let Vectors {
             place: configuration,
             rate,
             internal,
             history,
             ..
-        } = &mut self.vectors;
+        } = &mut attempt.vectors;
         let (u, v, frames) = match place {
-            Which::Place => (&configuration[..], &rate[..], &self.state.motion.frames),
+            Which::Place => (&configuration[..], &rate[..], &attempt.state.motion.frames),
             Which::Next => {
-                let next = &self.next.motion;
+                let next = &attempt.next.motion;
                 (&next.u[..], &next.v[..], &next.frames)
             }
         };
-        let from = from.then_some(&self.state.motion.u[..]);
+        let from = from.then_some(&attempt.state.motion.u[..]);
         internal.fill(0.0);
         self.force_sweeps += 1;
         let at = Bodies {
@@ -172,21 +176,21 @@ impl Driver {
             v,
             from,
             frames,
-            history: &self.state.motion.history,
+            history: &attempt.state.motion.history,
         };
-        let maps = &self.maps;
+        let maps = &attempt.maps;
         let dt = |body: usize| dt(&maps.all()[system.zone_of_body[body]]);
         let sum = add_up(system, &at, dt, (history, internal), &mut self.scratch)?;
-        self.phases.forces += begin.elapsed();
+        attempt.phases.forces += begin.elapsed();
         Ok(sum)
     }
 
     /// Strain energy U(u), J, of linear bodies, and f(u), N, into `work`. `u`: in `place`.
-    pub(super) fn linear_forces(&mut self) -> f64 {
-        let Vectors { place, work, .. } = &mut self.vectors;
+    pub(super) fn linear_forces(&mut self, attempt: &mut Attempt) -> f64 {
+        let Vectors { place, work, .. } = &mut attempt.vectors;
         work.fill(0.0);
         self.force_sweeps += 1;
-        let bodies = self.system.bodies.iter().zip(&mut self.scratch);
+        let bodies = attempt.system.bodies.iter().zip(&mut self.scratch);
         bodies
             .map(|(body, scratch)| body.internal_force(place, scratch, work))
             .sum()

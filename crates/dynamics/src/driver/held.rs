@@ -15,23 +15,28 @@ impl Driver {
     /// # Errors
     /// One that has left its face so far that it does not stand for the surface.
     pub(super) fn check_held(&mut self, passes: usize) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
+        let system = Arc::clone(&self.attempt.system);
         for k in 0..system.contacts.len() {
-            let mut u = std::mem::take(&mut self.vectors.place);
-            let paired = self.paired_at(k);
-            let xc = [&self.vectors.x[..], &self.vectors.push];
-            let motion = &self.state.motion;
-            self.maps.whole(|map| paired.row(map), motion, xc, &mut u);
-            let time = self.state.time + self.paired_after(k);
-            let mut places = system.places(time, &u, &self.state.motion.frames);
-            places.frames.middle = self.between();
-            let all = as_narrowed(&self.narrowed, &system, k).held(&places, &self.search[k]);
-            self.vectors.place = u;
+            let mut u = std::mem::take(&mut self.attempt.vectors.place);
+            let paired = self.contacts.paired_at(k);
+            let xc = [&self.attempt.vectors.x[..], &self.attempt.vectors.push];
+            let motion = &self.attempt.state.motion;
+            self.attempt
+                .maps
+                .whole(|map| paired.row(map), motion, xc, &mut u);
+            let time = self.attempt.state.time + self.contacts.paired_after(&self.attempt, k);
+            let mut places = system.places(time, &u, &self.attempt.state.motion.frames);
+            places.frames.middle = self.attempt.between();
+            let all = as_narrowed(&self.contacts.narrowed, &system, k)
+                .held(&places, &self.contacts.search[k]);
+            self.attempt.vectors.place = u;
             for held in all {
-                let name = self.name(system.contacts[k].range.start + held.point);
+                let name = self
+                    .attempt
+                    .name(system.contacts[k].range.start + held.point);
                 tracing::debug!(
                     "step {}: {name} alternated between faces and stays with one; the error of its gap is {:.1e} of the face",
-                    self.state.step + 1,
+                    self.attempt.state.step + 1,
                     held.error
                 );
                 if held.error.abs() > STRAYED {

@@ -7,6 +7,7 @@ use carom_algebra::reduce::dot;
 use carom_bodies::Body;
 
 use super::Driver;
+use super::owners::{Attempt, Parts};
 use super::reported;
 use crate::ledger::reactions;
 use crate::resultant::Resultant;
@@ -47,88 +48,21 @@ pub(super) enum End {
 }
 
 impl Driver {
-    /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
-    /// impulse where there is none.
-    pub(super) fn work_weights(&self) -> WorkWeights {
-        let Impulse { old, new, .. } = self.maps.first().contact_impulse;
-        let of_impulse = WorkWeights { old, new, lag: 0.0 };
-        self.identity.map_or(of_impulse, |identity| WorkWeights {
-            old: identity.old,
-            new: identity.new,
-            lag: identity.lag,
-        })
-    }
-
-    fn motion_at(&self, end: End) -> &Motion {
-        match end {
-            End::Start => &self.state.motion,
-            End::Finish => &self.next.motion,
-        }
-    }
-
-    /// Energies of a motion with this strain energy (J), those that the scheme balances beside included.
-    fn energies_at(&mut self, end: End, strain: f64) -> Energies {
-        let system = Arc::clone(&self.system);
-        let identity = self.identity.unwrap_or_default();
-        let [memory, lagged] = self.own_energies(end, &identity, strain);
-        let motion = match end {
-            End::Start => &self.state.motion,
-            End::Finish => &self.next.motion,
-        };
-        let work = &mut self.vectors.work;
-        let with_acceleration = identity.inertia != 0.0;
-        Energies {
-            memory,
-            lagged,
-            ..energies(&system, motion, (strain, with_acceleration, None), work)
-        }
-    }
-
-    /// |m|²_K and U(u - lag v) - U(u) of a motion with this strain energy, J, as far as the identity asks for them; of linear bodies.
-    pub(super) fn own_energies(
-        &mut self,
-        end: End,
-        identity: &EnergyIdentity,
-        strain: f64,
-    ) -> [f64; 2] {
-        let mut place = std::mem::take(&mut self.vectors.place);
-        let mut lagged = 0.0;
-        if identity.lag != 0.0 {
-            let motion = self.motion_at(end);
-            for (i, place) in place.iter_mut().enumerate() {
-                *place = motion.u[i] - identity.lag * motion.v[i];
-            }
-            self.vectors.place = place;
-            lagged = self.linear_forces() - strain;
-            place = std::mem::take(&mut self.vectors.place);
-        }
-        let mut memory = 0.0;
-        if identity.memory != 0.0 {
-            place.copy_from_slice(&self.motion_at(end).memory);
-            self.vectors.place = place;
-            // U is quadratic
-            memory = 2.0 * self.linear_forces();
-            place = std::mem::take(&mut self.vectors.place);
-        }
-        self.vectors.place = place;
-        [memory, lagged]
-    }
-
-    /// Energies of the state, with what the scheme of the step balances.
-    pub(super) fn energies_at_the_start(&mut self, strain: f64) -> Energies {
-        self.energies_at(End::Start, strain)
-    }
-
     /// Energy and momentum of the step.
     pub(super) fn balance_by_identity(&mut self) {
-        let system = Arc::clone(&self.system);
-        let identity = self.identity.unwrap_or_default();
-        let energies = self.energies_at(End::Finish, self.stored.strain);
-        let filtered = self.filtered(&identity);
+        let system = Arc::clone(&self.attempt.system);
+        let identity = self.attempt.identity.unwrap_or_default();
+        let energies =
+            self.parts
+                .energies_at(&mut self.attempt, End::Finish, self.parts.stored.strain);
+        let filtered = self.parts.filtered(&mut self.attempt, &identity);
         let [supports, held] = self.reactions();
         let stage = self.predictor_loss();
-        let (weights, of_links) = (self.work_weights(), self.link_work_weights(0));
-        let (old, new) = (&self.state.motion, &self.next.motion);
+        let (weights, of_links) = (
+            self.attempt.work_weights(),
+            self.attempt.link_work_weights(0),
+        );
+        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
         let contact = Resultant::of(&system, &new.contact_force);
         let loads = Resultant::of(&system, &system.load);
         let links = Resultant::of(&system, &new.link_force);
@@ -137,7 +71,7 @@ impl Driver {
             place,
             work,
             ..
-        } = &mut self.vectors;
+        } = &mut self.attempt.vectors;
         let squares = Squares {
             stage,
             filtered,
@@ -150,7 +84,7 @@ impl Driver {
         }
         let work_contact = weights.of([old, new], travel);
         let work_loads = dot(travel, &system.load);
-        let given = &mut self.works.given;
+        let given = &mut self.balances.works.given;
         given.clear();
         given.extend(system.parts.iter().map(|part| {
             let unknowns = part.clone();
@@ -164,17 +98,18 @@ impl Driver {
                     + weights.new * dot(travel, &new.link_force)
             }
         };
-        let rounding = self.rounding_of_step();
-        let energy_of_scheme = (self.dt != self.state.control.taken).then(|| {
-            let at_the_start = self.energies_at_the_start(self.state.ledger.balance.strain);
+        let rounding = self.parts.rounding_of_step(&self.attempt);
+        let energy_of_scheme = (self.attempt.dt != self.attempt.state.control.taken).then(|| {
+            let strain = self.attempt.state.ledger.balance.strain;
+            let at_the_start = self.parts.energies_at_the_start(&mut self.attempt, strain);
             at_the_start.of_scheme(&identity)
         });
-        self.next.ledger = self.state.ledger.after(&StepTerms {
-            dt: self.dt,
+        self.attempt.next.ledger = self.attempt.state.ledger.after(&StepTerms {
+            dt: self.attempt.dt,
             is_static: false,
             identity: &identity,
-            impulse: &self.maps.first().impulse,
-            contact_impulse: &self.maps.first().contact_impulse,
+            impulse: &self.attempt.maps.first().impulse,
+            contact_impulse: &self.attempt.maps.first().contact_impulse,
             energies,
             work_loads,
             work_contacts: work_contact,
@@ -194,41 +129,41 @@ impl Driver {
         });
     }
 
-    /// |Δm|²_K of the step, as far as the identity asks for it.
-    fn filtered(&mut self, identity: &EnergyIdentity) -> f64 {
-        if identity.filtered == 0.0 {
-            return 0.0;
-        }
-        let [old, new] = [&self.state, &self.next].map(|state| &state.motion.memory);
-        difference(old, new, &mut self.vectors.place);
-        2.0 * self.linear_forces()
-    }
-
     /// Resultants of the forces of the supports and the ground in the step; apart, those against contact forces that act in the
     /// impulse in their own way.
     fn reactions(&mut self) -> [Resultant; 2] {
-        let system = Arc::clone(&self.system);
-        if self.maps.first().force_fraction.is_none() {
-            let super::Vectors { x, push, place, .. } = &mut self.vectors;
-            self.maps
-                .whole(|map| map.force, &self.state.motion, [x, push], place);
-            self.linear_forces();
+        let system = Arc::clone(&self.attempt.system);
+        if self.attempt.maps.first().force_fraction.is_none() {
+            let super::Vectors { x, push, place, .. } = &mut self.attempt.vectors;
+            self.attempt.maps.whole(
+                |map| map.force,
+                &self.attempt.state.motion,
+                [x, push],
+                place,
+            );
+            self.parts.linear_forces(&mut self.attempt);
         }
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let super::Vectors { work, inertia, .. } = &mut self.vectors;
-        reactions(&system, self.maps.first(), old, new, inertia, work);
-        self.take_linear_springs();
-        let new = &self.next.motion;
-        let super::Vectors { half, work, .. } = &mut self.vectors;
-        let exchange = &mut self.next.exchange;
-        exchange.follow(&self.state.exchange);
+        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
+        let super::Vectors { work, inertia, .. } = &mut self.attempt.vectors;
+        reactions(&system, self.attempt.maps.first(), old, new, inertia, work);
+        self.attempt.take_linear_springs();
+        let new = &self.attempt.next.motion;
+        let super::Vectors { half, work, .. } = &mut self.attempt.vectors;
+        let exchange = &mut self.attempt.next.exchange;
+        exchange.follow(&self.attempt.state.exchange);
         let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
-        exchange.add(&system, (0, self.dt, |_| self.maps.first().impulse), own);
+        exchange.add(
+            &system,
+            (0, self.attempt.dt, |_| self.attempt.maps.first().impulse),
+            own,
+        );
         let supports = Resultant::of(&system, work);
-        let apart = self.maps.first().impulse != self.maps.first().contact_impulse;
+        let apart = self.attempt.maps.first().impulse != self.attempt.maps.first().contact_impulse;
         let held = |i: usize| if apart { new.contact_force[i] } else { 0.0 };
-        let at = (&self.state.motion.frames[..], None);
-        reported::write(&mut self.reactions, &system, at, |i| work[i] - held(i));
+        let at = (&self.attempt.state.motion.frames[..], None);
+        reported::write(&mut self.balances.reactions, &system, at, |i| {
+            work[i] - held(i)
+        });
         if !apart {
             return [supports, Resultant::default()];
         }
@@ -240,10 +175,33 @@ impl Driver {
         }
         exchange.add(
             &system,
-            (1, self.dt, |_| self.maps.first().contact_impulse),
+            (1, self.attempt.dt, |_| {
+                self.attempt.maps.first().contact_impulse
+            }),
             |i| half[i],
         );
         [supports, Resultant::of(&system, half)]
+    }
+}
+
+impl Attempt {
+    /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
+    /// impulse where there is none.
+    pub(super) fn work_weights(&self) -> WorkWeights {
+        let Impulse { old, new, .. } = self.maps.first().contact_impulse;
+        let of_impulse = WorkWeights { old, new, lag: 0.0 };
+        self.identity.map_or(of_impulse, |identity| WorkWeights {
+            old: identity.old,
+            new: identity.new,
+            lag: identity.lag,
+        })
+    }
+
+    pub(super) fn motion_at(&self, end: End) -> &Motion {
+        match end {
+            End::Start => &self.state.motion,
+            End::Finish => &self.next.motion,
+        }
     }
 
     /// The factor of |a|²_M in the energy that one scheme balances; zero of several.
@@ -285,6 +243,72 @@ impl Driver {
                 }
             }
         }
+    }
+}
+
+impl Parts {
+    /// Energies of a motion with this strain energy (J), those that the scheme balances beside included.
+    pub(super) fn energies_at(&mut self, attempt: &mut Attempt, end: End, strain: f64) -> Energies {
+        let system = Arc::clone(&attempt.system);
+        let identity = attempt.identity.unwrap_or_default();
+        let [memory, lagged] = self.own_energies(attempt, end, &identity, strain);
+        let motion = match end {
+            End::Start => &attempt.state.motion,
+            End::Finish => &attempt.next.motion,
+        };
+        let work = &mut attempt.vectors.work;
+        let with_acceleration = identity.inertia != 0.0;
+        Energies {
+            memory,
+            lagged,
+            ..energies(&system, motion, (strain, with_acceleration, None), work)
+        }
+    }
+
+    /// |m|²_K and U(u - lag v) - U(u) of a motion with this strain energy, J, as far as the identity asks for them; of linear bodies.
+    pub(super) fn own_energies(
+        &mut self,
+        attempt: &mut Attempt,
+        end: End,
+        identity: &EnergyIdentity,
+        strain: f64,
+    ) -> [f64; 2] {
+        let mut place = std::mem::take(&mut attempt.vectors.place);
+        let mut lagged = 0.0;
+        if identity.lag != 0.0 {
+            let motion = attempt.motion_at(end);
+            for (i, place) in place.iter_mut().enumerate() {
+                *place = motion.u[i] - identity.lag * motion.v[i];
+            }
+            attempt.vectors.place = place;
+            lagged = self.linear_forces(attempt) - strain;
+            place = std::mem::take(&mut attempt.vectors.place);
+        }
+        let mut memory = 0.0;
+        if identity.memory != 0.0 {
+            place.copy_from_slice(&attempt.motion_at(end).memory);
+            attempt.vectors.place = place;
+            // U is quadratic
+            memory = 2.0 * self.linear_forces(attempt);
+            place = std::mem::take(&mut attempt.vectors.place);
+        }
+        attempt.vectors.place = place;
+        [memory, lagged]
+    }
+
+    /// Energies of the state, with what the scheme of the step balances.
+    pub(super) fn energies_at_the_start(&mut self, attempt: &mut Attempt, strain: f64) -> Energies {
+        self.energies_at(attempt, End::Start, strain)
+    }
+
+    /// |Δm|²_K of the step, as far as the identity asks for it.
+    pub(super) fn filtered(&mut self, attempt: &mut Attempt, identity: &EnergyIdentity) -> f64 {
+        if identity.filtered == 0.0 {
+            return 0.0;
+        }
+        let [old, new] = [&attempt.state, &attempt.next].map(|state| &state.motion.memory);
+        difference(old, new, &mut attempt.vectors.place);
+        2.0 * self.linear_forces(attempt)
     }
 }
 

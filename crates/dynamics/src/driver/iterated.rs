@@ -6,6 +6,7 @@ use carom_algebra::Error as AlgebraError;
 use carom_nonsmooth::Compliance as D;
 
 use super::Driver;
+use super::owners::Attempt;
 use crate::compliance::Compliance;
 use crate::coulomb::{Posed, Tangential};
 use crate::error::{Error, MeshNode};
@@ -16,11 +17,13 @@ use carom_system::ContactPair;
 impl Driver {
     /// Whether the motion without contact forces is found together with them: no matrix has a factor, and nobody asks for it alone.
     pub(super) fn finds_all_at_once(&mut self) -> bool {
-        let system = &*self.system;
+        let system = &*self.attempt.system;
         let asks = |contact: &ContactPair| contact.law.needs_free_gap();
         let asked = system.adaptive.is_some() || system.contacts.iter().any(asks);
         let iterates = |(operators, _): (&mut Operators, &mut Compliance)| operators.iterate();
-        !asked && !self.candidates.is_empty() && self.effective.both().is_some_and(iterates)
+        !asked
+            && !self.contacts.candidates.is_empty()
+            && self.parts.effective.both().is_some_and(iterates)
     }
 
     /// Forces and statuses of the candidates; the motion of the forces is added to the begun solve. `factor`: that of contact forces in the
@@ -29,26 +32,33 @@ impl Driver {
     /// # Errors
     /// Iterations that do not end, statuses that do not settle.
     pub(super) fn solve_iterated(&mut self, factor: f64) -> Result<(), Error> {
-        let map = self.maps.first();
+        let map = self.attempt.maps.first();
         let factors = [map.gap.x * factor, map.rate.x * factor];
-        let Some((operators, compliance)) = self.effective.both() else {
+        let Some((operators, compliance)) = self.parts.effective.both() else {
             return Ok(());
         };
         let (lent, tolerance) = operators.lend();
         let rows = self
+            .contacts
             .candidates
             .iter()
             .map(|&point| compliance.row(point, operators));
-        let left = &self.vectors.left;
+        let left = &self.attempt.vectors.left;
         let load = |load: &mut [f64]| {
             for (load, left) in load.iter_mut().zip(left) {
                 *load = left / factor;
             }
         };
-        self.saddle.get_mut().begin(lent, rows, (tolerance, load));
-        let problem = (D::Iterated(&self.saddle), compliance.version);
-        let solved = self.interface.solve(&self.candidate_data, problem, factors);
-        let saddle = self.saddle.get_mut();
+        self.contacts
+            .saddle
+            .get_mut()
+            .begin(lent, rows, (tolerance, load));
+        let problem = (D::Iterated(&self.contacts.saddle), compliance.version);
+        let solved = self
+            .contacts
+            .interface
+            .solve(&self.contacts.candidate_data, problem, factors);
+        let saddle = self.contacts.saddle.get_mut();
         operators.take_back(saddle.end());
         match solved {
             Ok(()) => {}
@@ -57,11 +67,15 @@ impl Driver {
                 ..
             }) => {
                 let unknown = operators.unknown_at(unknown);
-                return Err(self.not_solved(unknown, cause));
+                return Err(self.attempt.not_solved(unknown, cause));
             }
-            Err(failure) => return Err(self.interface_error(failure, &self.candidates)),
+            Err(failure) => {
+                return Err(self
+                    .attempt
+                    .interface_error(failure, &self.contacts.candidates));
+            }
         }
-        saddle.add_motion(factor, &mut self.vectors.half);
+        saddle.add_motion(factor, &mut self.attempt.vectors.half);
         self.take_forces(factor)
     }
 
@@ -71,46 +85,51 @@ impl Driver {
         friction: &[Tangential],
         s: [f64; 3],
     ) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
-        let (tangents, factor) = (system.tangents(), self.maps.contact());
+        let system = Arc::clone(&self.attempt.system);
+        let (tangents, factor) = (system.tangents(), self.attempt.maps.contact());
         let width = 1 + tangents as u32;
-        let Some((operators, compliance)) = self.effective.both() else {
+        let Some((operators, compliance)) = self.parts.effective.both() else {
             return Ok(());
         };
         let (lent, tolerance) = operators.lend();
-        let numbers = self.candidates.iter();
+        let numbers = self.contacts.candidates.iter();
         let numbers = numbers.flat_map(|&point| point * width..(point + 1) * width);
         let rows = numbers.map(|number| compliance.row(number, operators));
-        let left = &self.vectors.left;
+        let left = &self.attempt.vectors.left;
         let load = |load: &mut [f64]| {
             for (load, left) in load.iter_mut().zip(left) {
                 *load = left / factor;
             }
         };
-        self.saddle.get_mut().begin(lent, rows, (tolerance, load));
+        self.contacts
+            .saddle
+            .get_mut()
+            .begin(lent, rows, (tolerance, load));
         let posed = Posed {
-            candidates: &self.candidate_data,
+            candidates: &self.contacts.candidate_data,
             friction,
             tangents,
-            d: D::Iterated(&self.saddle),
+            d: D::Iterated(&self.contacts.saddle),
             s,
             tolerance: system.nonlinear.iteration.tolerance,
         };
-        let solved = self.coulomb.solve(&posed);
-        let saddle = self.saddle.get_mut();
+        let solved = self.contacts.coulomb.solve(&posed);
+        let saddle = self.contacts.saddle.get_mut();
         operators.take_back(saddle.end());
-        match (solved, self.coulomb.cause.take()) {
+        match (solved, self.contacts.coulomb.cause.take()) {
             (Ok(()), _) => {}
             (Err(_), Some(cause @ AlgebraError::Iterations { unknown, .. })) => {
                 let unknown = operators.unknown_at(unknown);
-                return Err(self.not_solved(unknown, cause));
+                return Err(self.attempt.not_solved(unknown, cause));
             }
-            (Err(failure), _) => return Err(self.friction_error(failure)),
+            (Err(failure), _) => return Err(self.contacts.friction_error(&self.attempt, failure)),
         }
-        saddle.add_motion(factor, &mut self.vectors.half);
+        saddle.add_motion(factor, &mut self.attempt.vectors.half);
         Ok(())
     }
+}
 
+impl Attempt {
     /// The error of iterations that do not end. `unknown`: the one with the largest residual.
     pub(super) fn not_solved(&self, unknown: usize, cause: AlgebraError) -> Error {
         let system = &*self.system;

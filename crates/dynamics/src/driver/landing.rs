@@ -8,18 +8,22 @@ impl Driver {
     /// When the first of the points in flight is at its lead of steps of size `planned`, after the start of the attempt just
     /// made, s; infinite where none is. `largest`: the largest step that the rules allow, s.
     pub fn first_cut(&self, (rules, largest): (&Adaptive, f64), planned: f64) -> f64 {
-        let maps = Maps::new(&self.system, planned, planned);
-        let interface = &self.state.interface;
+        let maps = Maps::new(&self.attempt.system, planned, planned);
+        let interface = &self.attempt.state.interface;
         let mut first = f64::INFINITY;
-        for point in 0..self.system.points() {
+        for point in 0..self.attempt.system.points() {
             let (gap, flight) = (interface.gap[point], interface.flight[point]);
-            let number = self.system.contact_of(point);
-            let tolerance = self.system.contacts[number].tolerance;
+            let number = self.attempt.system.contact_of(point);
+            let tolerance = self.attempt.system.contacts[number].tolerance;
             if flies((gap, flight), tolerance, (rules, largest)) {
-                let law = self.system.contacts[number].law.get();
-                let zone = self.system.zone_of(number);
-                let way = [gap, self.rate_at_start(point), self.free_gap(point)];
-                let arrival = arrival(way, self.dt, tolerance);
+                let law = self.attempt.system.contacts[number].law.get();
+                let zone = self.attempt.system.zone_of(number);
+                let way = [
+                    gap,
+                    self.contacts.rate_at_start(&self.attempt, point),
+                    self.free_gap(point),
+                ];
+                let arrival = arrival(way, self.attempt.dt, tolerance);
                 let cut = arrival - lead(&maps.all()[zone], planned, law);
                 if cut >= rules.smallest {
                     first = first.min(cut);
@@ -31,12 +35,12 @@ impl Driver {
 
     /// Gap of a point at the end of the step without its forces, m.
     fn free_gap(&self, point: usize) -> f64 {
-        if let Some(gap) = self.predictor.gap(point) {
+        if let Some(gap) = self.stages.predictor.gap(point) {
             return gap;
         }
-        match self.candidates.binary_search(&(point as u32)) {
-            Ok(k) => self.free_gaps[k],
-            Err(_) => self.next.interface.gap[point],
+        match self.contacts.candidates.binary_search(&(point as u32)) {
+            Ok(k) => self.contacts.free_gaps[k],
+            Err(_) => self.attempt.next.interface.gap[point],
         }
     }
 }

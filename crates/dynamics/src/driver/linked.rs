@@ -14,6 +14,7 @@ use carom_bodies::{Body, Placement};
 use serde::{Deserialize, Serialize};
 
 use super::Driver;
+use super::owners::Attempt;
 use super::paired::approaches;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
@@ -35,41 +36,41 @@ pub enum Growth {
 impl Driver {
     /// Makes the solver take forces of links from its next start on, which is with this force (N).
     pub fn link(&mut self, force: &[f64]) {
-        self.link_force = force.to_vec();
+        self.links.force = force.to_vec();
     }
 
     /// Makes the solver forget links until its next `link`.
     pub fn unlink(&mut self) {
-        self.link_force.clear();
+        self.links.force.clear();
     }
 
     /// Sets Cᵀ Λ of the step, N.
     pub fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
-        self.link_force.fill(0.0);
+        self.links.force.fill(0.0);
         for (row, terms) in rows {
             for &(dof, c) in terms {
-                self.link_force[dof as usize] += c * multipliers[*row as usize];
+                self.links.force[dof as usize] += c * multipliers[*row as usize];
             }
         }
     }
 
     /// Sets the force of the links, given term by term in the order of the rows, N.
     pub fn set_link_terms(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
-        self.link_force.fill(0.0);
+        self.links.force.fill(0.0);
         let terms = rows.iter().flat_map(|(_, terms)| terms);
         for ((dof, _), force) in terms.zip(forces) {
-            self.link_force[*dof as usize] += force;
+            self.links.force[*dof as usize] += force;
         }
     }
 
     /// Adds forces of other rows to those of the links, N.
     pub fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
-        if self.link_force.is_empty() {
-            self.link_force.resize(self.system.unknowns(), 0.0);
+        if self.links.force.is_empty() {
+            self.links.force.resize(self.attempt.system.unknowns(), 0.0);
         }
         for (row, terms) in rows {
             for &(dof, c) in terms {
-                self.link_force[dof as usize] += c * forces[*row as usize];
+                self.links.force[dof as usize] += c * forces[*row as usize];
             }
         }
     }
@@ -80,64 +81,66 @@ impl Driver {
     /// As [`Driver::step`]; a step of a zone is not halved.
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
-        if self.prepared {
-            self.notices = Notices::default();
-            let outcome = self.take_stages().and_then(|()| self.check_finite());
-            self.unless_interrupted(outcome)?;
+        if self.parts.prepared {
+            self.attempt.notices = Notices::default();
+            let outcome = self
+                .take_stages()
+                .and_then(|()| self.attempt.check_finite());
+            self.attempt.unless_interrupted(outcome)?;
         } else {
-            self.attempt(self.dt, self.ahead)?;
+            self.attempt(self.attempt.dt, self.ahead)?;
         }
         let State {
             step,
             time,
             control,
             ..
-        } = &self.state;
-        self.next.step = step + 1;
-        self.next.time = control.instant(*step, *time, self.dt);
-        self.next.control = *control;
-        self.next.control.pace = self.pace.fresh;
-        self.next.control.compression = self.stored.compression;
+        } = &self.attempt.state;
+        self.attempt.next.step = step + 1;
+        self.attempt.next.time = control.instant(*step, *time, self.attempt.dt);
+        self.attempt.next.control = *control;
+        self.attempt.next.control.pace = self.parts.pace.fresh;
+        self.attempt.next.control.compression = self.parts.stored.compression;
         Ok(())
     }
 
     /// The state at the end of the step just completed, which is not accepted yet.
     pub fn ended(&self) -> &State {
-        &self.next
+        &self.attempt.next
     }
 
     /// Accepts the step just completed.
     pub fn take(&mut self) {
-        let (step, time) = (self.state.step, self.state.time);
-        let mut control = self.next.control;
-        control.take(None, (step, time, self.dt), self.system.dt);
-        self.report.notices.clone_from(&self.notices);
-        self.accept(control, self.dt);
+        let (step, time) = (self.attempt.state.step, self.attempt.state.time);
+        let mut control = self.attempt.next.control;
+        control.take(None, (step, time, self.attempt.dt), self.attempt.system.dt);
+        self.report.notices.clone_from(&self.attempt.notices);
+        self.accept(control, self.attempt.dt);
     }
 
     /// Makes the state that of an earlier instant.
     pub fn go_back(&mut self, state: &State) {
-        self.prepared = false;
-        self.state.clone_from(state);
+        self.parts.prepared = false;
+        self.attempt.state.clone_from(state);
     }
 
     /// Makes `dt` the size of the next steps, of an explicit scheme before one of the size `next` (both s).
     pub fn resize(&mut self, dt: f64, next: f64) {
-        self.prepared = false;
+        self.parts.prepared = false;
         self.ahead = next;
-        self.size(dt, next);
+        self.contacts.size(&mut self.attempt, dt, next);
     }
 
     /// Weights of L at the start and the end of a step in Λ.
     pub fn link_weights(&self) -> [f64; 2] {
-        self.system.scheme.get().link_weights()
+        self.attempt.system.scheme.get().link_weights()
     }
 
     /// Work of the force of one row in the step just completed, J: `before` and `now` are the row's Λ of the step before and
     /// of this one.
     pub fn row_work(&self, terms: &LinkRow, before: f64, now: f64) -> f64 {
-        let weights = &self.link_work_weights(0);
-        let [old, new] = [&self.state.motion, &self.next.motion];
+        let weights = &self.attempt.link_work_weights(0);
+        let [old, new] = [&self.attempt.state.motion, &self.attempt.next.motion];
         let travel = on(terms, &new.u) - on(terms, &old.u);
         // a row of many terms costs as much again
         let later = match weights.lag == 0.0 {
@@ -155,8 +158,8 @@ impl Driver {
         [before, now]: [&[f64]; 2],
         mut add: impl FnMut(u32, f64),
     ) {
-        let weights = &self.link_work_weights(0);
-        let [old, new] = [&self.state.motion, &self.next.motion];
+        let weights = &self.attempt.link_work_weights(0);
+        let [old, new] = [&self.attempt.state.motion, &self.attempt.next.motion];
         let mut forces = before.iter().zip(now);
         for (row, terms) in rows {
             let work = |(&(dof, _), (before, now)): (&(u32, f64), (&f64, &f64))| {
@@ -171,26 +174,18 @@ impl Driver {
 
     /// Factors of M and K in the effective matrix, and of its solution in the velocity at the end of a step.
     pub fn effective(&self) -> (f64, f64, f64) {
-        let map = self.linear_map();
+        let map = self.attempt.linear_map();
         (map.inertia.x, map.force.x, map.velocity.x)
-    }
-
-    /// The map of the linearised zone: where forces belong to the way of the step they are those of its middle.
-    fn linear_map(&self) -> StepMap {
-        match self.between() {
-            true => Scheme::Theta(Theta { theta: 0.5 }).get().step_map(self.dt),
-            false => *self.maps.first(),
-        }
     }
 
     /// Loads at the present instant, after a start, N.
     pub fn load(&self) -> &[f64] {
-        &self.vectors.load
+        &self.attempt.vectors.load
     }
 
     /// Weights of the velocities at the start and at the end of a step in its way, s: of the schemes whose way is one of velocities.
     pub fn way_weights(&self) -> [f64; 2] {
-        let map = self.linear_map();
+        let map = self.attempt.linear_map();
         let end = map.displacement.x / map.velocity.x;
         [map.displacement.v - end * map.velocity.v, end]
     }
@@ -198,7 +193,8 @@ impl Driver {
     /// Way of a row in the step just completed, m.
     pub fn row_way(&self, terms: &LinkRow) -> f64 {
         let [start, end] = self.way_weights();
-        start * on(terms, &self.state.motion.v) + end * on(terms, &self.next.motion.v)
+        start * on(terms, &self.attempt.state.motion.v)
+            + end * on(terms, &self.attempt.next.motion.v)
     }
 
     /// Velocities that multipliers leave in the rows over some steps, without contact, and the ways of the rows: the dense
@@ -211,15 +207,15 @@ impl Driver {
         (rows, steps): (&[(u32, LinkRow)], (u32, Growth)),
         origin: &Origin,
     ) -> Result<[Vec<f64>; 2], Error> {
-        let system = Arc::clone(&self.system);
+        let system = Arc::clone(&self.attempt.system);
         let weights = [self.link_weights(), self.way_weights()];
-        let map = self.linear_map();
-        self.take_matrices()?;
+        let map = self.attempt.linear_map();
+        self.parts.take_matrices(&mut self.attempt)?;
         if system.bodies.iter().all(Body::is_linear)
-            && !self.effective.iterates()
-            && let Some((operators, _)) = self.effective.both()
+            && !self.parts.effective.iterates()
+            && let Some((operators, _)) = self.parts.effective.both()
         {
-            let scratch = &mut self.scratch;
+            let scratch = &mut self.parts.scratch;
             let mut ramp = Ramp {
                 system: &system,
                 map: &map,
@@ -246,12 +242,12 @@ impl Driver {
                 v: &still,
                 from: None,
                 frames: &origin.frames,
-                dt: self.dt,
+                dt: self.attempt.dt,
                 old: &origin.history[system.nonlinear.histories[k].clone()],
             };
             body.add_tangent(&at, [1.0, 0.0], &mut stiffness)?;
         }
-        let mut operators = self.linear_operators(&map, &stiffness)?;
+        let mut operators = self.attempt.linear_operators(&map, &stiffness)?;
         let mut ramp = Ramp {
             system: &system,
             map: &map,
@@ -261,8 +257,55 @@ impl Driver {
         Ok(ramp.matrix(rows, steps, weights))
     }
 
+    /// Makes ready what the forces of links do not change, of a step that is linear in the unknown.
+    ///
+    /// # Errors
+    /// As [`Driver::step`].
+    pub fn prepare(&mut self) -> Result<(), Error> {
+        (self.contacts.failed, self.contacts.failed_friction) = (None, None);
+        self.parts.prepared = false;
+        self.begin_stage()?;
+        let scheme = self.attempt.system.scheme.get();
+        if !self.attempt.system.nonlinear.follows.is_empty() || scheme.projects_predictor() {
+            return Ok(());
+        }
+        let (begin, before) = (Instant::now(), self.attempt.phases);
+        self.parts.take_matrices(&mut self.attempt)?;
+        if self.is_affine() {
+            self.begin_iterations(false)?;
+            self.parts.prepared = true;
+        }
+        self.attempt.count_contact(begin, before);
+        Ok(())
+    }
+
+    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
+    pub fn may_touch(&self, dt: f64) -> bool {
+        let interface = &self.attempt.state.interface;
+        let touches = |point: usize| {
+            let ahead = (interface.gap[point], interface.rate[point]);
+            interface.force[point] != 0.0
+                || approaches(ahead, dt, self.attempt.system.tolerance_at(point))
+        };
+        (0..self.attempt.system.points()).any(touches)
+    }
+}
+
+impl Attempt {
+    /// The map of the linearised zone: where forces belong to the way of the step they are those of its middle.
+    pub(super) fn linear_map(&self) -> StepMap {
+        match self.between() {
+            true => Scheme::Theta(Theta { theta: 0.5 }).get().step_map(self.dt),
+            false => *self.maps.first(),
+        }
+    }
+
     /// The factors of the effective matrix with this stiffness.
-    fn linear_operators(&self, map: &StepMap, stiffness: &Csr) -> Result<Operators, Error> {
+    pub(super) fn linear_operators(
+        &self,
+        map: &StepMap,
+        stiffness: &Csr,
+    ) -> Result<Operators, Error> {
         let system = &*self.system;
         if map.force.x == 0.0 && system.mass.is_lumped() {
             return Operators::new(system, map.inertia.x, 0.0, "effective matrix");
@@ -279,38 +322,6 @@ impl Driver {
             group.operator = Some(operator);
         }
         Ok(operators)
-    }
-
-    /// Makes ready what the forces of links do not change, of a step that is linear in the unknown.
-    ///
-    /// # Errors
-    /// As [`Driver::step`].
-    pub fn prepare(&mut self) -> Result<(), Error> {
-        (self.failed, self.failed_friction) = (None, None);
-        self.prepared = false;
-        self.begin_stage()?;
-        let scheme = self.system.scheme.get();
-        if !self.system.nonlinear.follows.is_empty() || scheme.projects_predictor() {
-            return Ok(());
-        }
-        let (begin, before) = (Instant::now(), self.phases);
-        self.take_matrices()?;
-        if self.is_affine() {
-            self.begin_iterations(false)?;
-            self.prepared = true;
-        }
-        self.count_contact(begin, before);
-        Ok(())
-    }
-
-    /// Whether a contact point carries a force or may do so within `dt` (s), at twice its present rate.
-    pub fn may_touch(&self, dt: f64) -> bool {
-        let interface = &self.state.interface;
-        let touches = |point: usize| {
-            let ahead = (interface.gap[point], interface.rate[point]);
-            interface.force[point] != 0.0 || approaches(ahead, dt, self.system.tolerance_at(point))
-        };
-        (0..self.system.points()).any(touches)
     }
 }
 

@@ -5,75 +5,21 @@ use std::sync::Arc;
 use super::Driver;
 use super::identity::WorkWeights;
 use super::linking::{Multipliers, add_forces, of_mass};
+use super::owners::{Attempt, Links};
 use crate::error::Error;
 use crate::operator::Operators;
-use crate::state::Links;
+use crate::state;
 use crate::system::{LinkRow, on};
 
 impl Driver {
-    /// Whether the system has links of its own.
-    pub(super) fn has_links(&self) -> bool {
-        !self.system.link_rows.is_empty()
-    }
-
-    /// Begins the attempt with the multipliers of the state.
-    pub(super) fn begin_links(&mut self) {
-        if self.has_links() {
-            self.multipliers
-                .now
-                .clone_from(&self.state.links.multipliers);
-            self.set_links();
-        }
-    }
-
-    /// Begins an iteration.
-    pub(super) fn begin_link_iteration(&mut self) {
-        self.multipliers.change[0].fill(0.0);
-        self.multipliers.before.clone_from(&self.multipliers.now);
-    }
-
-    /// Makes the multipliers those of the iteration, a part `share` of its way from those before.
-    pub(super) fn move_links(&mut self, share: f64) {
-        if !self.has_links() {
-            return;
-        }
-        let Multipliers {
-            now,
-            change: [free, pushed],
-            before,
-            ..
-        } = &mut self.multipliers;
-        for (i, now) in now.iter_mut().enumerate() {
-            *now = before[i] + share * (free[i] + pushed[i]);
-        }
-        self.set_links();
-    }
-
-    /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}); of several schemes with rows that turn L_k with the rows at the start of the step.
-    pub(super) fn set_links(&mut self) {
-        let start = self.rows_before();
-        self.link_force.fill(0.0);
-        let system = &*self.system;
-        let (before, now) = (&self.state.links.multipliers, &self.multipliers.now);
-        for (i, row) in self.rows.iter().enumerate() {
-            for (k, &(dof, c)) in row.iter().enumerate() {
-                let [old, new] = self.maps.link_weights(system.zone_at(dof as usize));
-                self.link_force[dof as usize] += match &start {
-                    None => c * (old * before[i] + new * now[i]),
-                    Some(start) => start[i][k].1 * old * before[i] + c * new * now[i],
-                };
-            }
-        }
-    }
-
     /// Holds the rows in the begun solve, without what contact forces change in it.
     pub(super) fn hold_links(&mut self) {
-        if !self.has_links() {
+        if !self.attempt.has_links() {
             return;
         }
-        let bent = self.bent_rows();
-        let (system, maps) = (Arc::clone(&self.system), &self.maps);
-        let (motion, vectors) = (&self.state.motion, &mut self.vectors);
+        let bent = self.attempt.bent_rows();
+        let (system, maps) = (Arc::clone(&self.attempt.system), &self.attempt.maps);
+        let (motion, vectors) = (&self.attempt.state.motion, &mut self.attempt.vectors);
         let of_row = |row: &LinkRow| -> f64 {
             let term = |&(dof, c): &(u32, f64)| {
                 let i = dof as usize;
@@ -87,15 +33,15 @@ impl Driver {
             change: [free, pushed],
             defect,
             ..
-        } = &mut self.multipliers;
-        for (defect, row) in defect.iter_mut().zip(self.rows.iter()) {
+        } = &mut self.links.multipliers;
+        for (defect, row) in defect.iter_mut().zip(self.links.rows.iter()) {
             *defect = of_row(row);
         }
         for (row, h) in bent {
             defect[row] = h;
         }
         pushed.fill(0.0);
-        if let Some((operators, _, Some(linking))) = self.effective.all() {
+        if let Some((operators, _, Some(linking))) = self.parts.effective.all() {
             let forces = (&mut vectors.work[..], &mut vectors.half[..]);
             linking.hold(&system, operators, forces, (defect, free));
         }
@@ -104,96 +50,39 @@ impl Driver {
     /// What contact forces give by themselves keeps the rows of links by multipliers of its own, which are among the contact forces:
     /// takes them from the change of the others.
     pub(super) fn part_links(&mut self) {
-        if self.vectors.push.is_empty() || !self.has_links() {
+        if self.attempt.vectors.push.is_empty() || !self.attempt.has_links() {
             return;
         }
         self.spread();
         // schemes in which forces give accelerations by themselves stand alone
-        let part = self.maps.contact() / self.maps.link_weights(0)[1];
-        if let Some(stage) = &self.impulses {
-            let changes = self.multipliers.change[1].iter_mut();
+        let part = self.attempt.maps.contact() / self.attempt.maps.link_weights(0)[1];
+        if let Some(stage) = &self.stages.impulses {
+            let changes = self.links.multipliers.change[1].iter_mut();
             changes
                 .zip(&stage.links)
                 .for_each(|(change, l)| *change -= part * l);
         }
     }
 
-    /// Makes velocities of the state the closest ones, in the norm of the mass, that satisfy the rows, and the multipliers
-    /// those that keep the accelerations in them.
-    ///
-    /// # Errors
-    /// Redundant rows, a mass that is not positive.
-    pub(super) fn start_links(&mut self) -> Result<(), Error> {
-        if !self.has_links() {
-            return Ok(());
-        }
-        let system = Arc::clone(&self.system);
-        let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
-        self.turn_rows_at_start();
-        let rows = Arc::clone(&self.rows);
-        let mut condensed = of_mass((&system, &rows), &mut mass)?;
-        let ones = vec![[1.0; 2]; system.parts.len()];
-        let n = system.unknowns();
-        let (mut half, mut x) = (vec![0.0; n], vec![0.0; n]);
-        let mut solve = |force: &[f64]| -> Vec<f64> {
-            mass.begin(force, &mut half);
-            mass.end(&mut half, &mut x);
-            x.clone()
-        };
-        let velocities = &mut self.state.motion.v;
-        let mut l: Vec<f64> = rows.iter().map(|row| on(row, velocities)).collect();
-        condensed.solve(&mut l);
-        let mut force = vec![0.0; n];
-        add_forces((&system, &rows), &ones, &l, &mut force);
-        for (v, change) in velocities.iter_mut().zip(solve(&force)) {
-            *v -= change;
-        }
-        self.evaluate_loads(self.state.time);
-        let (load, motion) = (&self.vectors.load, &self.state.motion);
-        let (inside, contact) = (&motion.internal_force, &motion.contact_force);
-        let damping = &self.vectors.damping;
-        let free = |i: usize| match system.fixed[i] {
-            true => 0.0,
-            false => load[i] + contact[i] - inside[i] - damping[i],
-        };
-        let balance: Vec<f64> = (0..n).map(free).collect();
-        let accelerations = solve(&balance);
-        let mut l: Vec<f64> = rows.iter().map(|row| -on(row, &accelerations)).collect();
-        for (row, own) in self.centripetal_rows() {
-            l[row] -= own;
-        }
-        condensed.solve(&mut l);
-        self.link_force.fill(0.0);
-        // held unknowns feel the links too
-        for (row, l) in rows.iter().zip(&l) {
-            for &(dof, c) in row {
-                self.link_force[dof as usize] += c * l;
-            }
-        }
-        self.state.motion.link_force.clone_from(&self.link_force);
-        let links = &mut self.state.links;
-        *links = Links::at_rest(&system);
-        links.mixed.fill(l.clone());
-        links.multipliers = l;
-        Ok(())
-    }
-
     /// Multipliers and works of the links in the step that was taken.
     pub(super) fn record_links(&mut self) {
-        if !self.has_links() {
+        if !self.attempt.has_links() {
             return;
         }
-        let system = Arc::clone(&self.system);
-        let start = self.rows_before();
-        let (old, next) = (&self.state.links, &mut self.next.links);
-        next.multipliers.clone_from(&self.multipliers.now);
+        let system = Arc::clone(&self.attempt.system);
+        let start = self.links.rows_before(&self.attempt);
+        let (old, next) = (&self.attempt.state.links, &mut self.attempt.next.links);
+        next.multipliers.clone_from(&self.links.multipliers.now);
         next.mixed.clone_from(&old.mixed);
         next.works.clone_from(&old.works);
-        let [before, after] = [&self.state.motion.u, &self.next.motion.u];
-        let rates = [&self.state.motion.v, &self.next.motion.v];
+        let [before, after] = [&self.attempt.state.motion.u, &self.attempt.next.motion.u];
+        let rates = [&self.attempt.state.motion.v, &self.attempt.next.motion.v];
         for zone in 0..system.schemes.len() {
-            let (weights, of_work) = (self.maps.link_weights(zone), self.link_work_weights(zone));
-            let next = &mut self.next.links;
+            let (weights, of_work) = (
+                self.attempt.maps.link_weights(zone),
+                self.attempt.link_work_weights(zone),
+            );
+            let next = &mut self.attempt.next.links;
             let own = |i: usize| system.zone_at(i) == zone;
             for (link, (_, rows)) in system.links.iter().enumerate() {
                 for row in rows.clone() {
@@ -203,7 +92,7 @@ impl Driver {
                     // those of the rows at the start of the step, and at its end
                     let earlier = of_work.old * mixed + of_work.new * weights[0] * l;
                     let later = of_work.new * weights[1] * next.multipliers[row];
-                    let (terms, inner) = (&self.rows[row], system.inner_terms[row]);
+                    let (terms, inner) = (&self.links.rows[row], system.inner_terms[row]);
                     let sides = [0..inner, inner..terms.len()];
                     for (work, side) in next.works[link].iter_mut().zip(sides) {
                         let side = side.filter(|&k| own(terms[k].0 as usize));
@@ -224,11 +113,34 @@ impl Driver {
             }
         }
         // a projection after the step changes the forces that the next one begins with
-        let next = &mut self.next.links;
-        for (row, more) in self.projected.links.iter().enumerate() {
+        let next = &mut self.attempt.next.links;
+        for (row, more) in self.stages.projected.links.iter().enumerate() {
             next.multipliers[row] += more;
             next.mixed.iter_mut().for_each(|mixed| mixed[row] += more);
         }
+    }
+
+    /// Multipliers of the rows of the links at the present instant, N per unit of the row.
+    pub fn multipliers(&self) -> &[f64] {
+        &self.attempt.state.links.multipliers
+    }
+
+    /// Name, number of rows, and works on the inner and the outer side since the start in J of each link.
+    pub fn links(&self) -> impl Iterator<Item = (&str, usize, [f64; 2])> {
+        let links = self
+            .attempt
+            .system
+            .links
+            .iter()
+            .zip(&self.attempt.state.links.works);
+        links.map(|((name, rows), work)| (name.as_str(), rows.len(), *work))
+    }
+}
+
+impl Attempt {
+    /// Whether the system has links of its own.
+    pub(super) fn has_links(&self) -> bool {
+        !self.system.link_rows.is_empty()
     }
 
     /// Weights of the forces of links at the start and of the step in their work in a zone: those of the ledger.
@@ -241,15 +153,116 @@ impl Driver {
         let [old, new] = self.weights_of(zone);
         WorkWeights { old, new, lag: 0.0 }
     }
+}
 
-    /// Multipliers of the rows of the links at the present instant, N per unit of the row.
-    pub fn multipliers(&self) -> &[f64] {
-        &self.state.links.multipliers
+impl Links {
+    /// Begins the attempt with the multipliers of the state.
+    pub(super) fn begin_links(&mut self, attempt: &Attempt) {
+        if attempt.has_links() {
+            self.multipliers
+                .now
+                .clone_from(&attempt.state.links.multipliers);
+            self.set_links(attempt);
+        }
     }
 
-    /// Name, number of rows, and works on the inner and the outer side since the start in J of each link.
-    pub fn links(&self) -> impl Iterator<Item = (&str, usize, [f64; 2])> {
-        let links = self.system.links.iter().zip(&self.state.links.works);
-        links.map(|((name, rows), work)| (name.as_str(), rows.len(), *work))
+    /// Begins an iteration.
+    pub(super) fn begin_link_iteration(&mut self) {
+        self.multipliers.change[0].fill(0.0);
+        self.multipliers.before.clone_from(&self.multipliers.now);
+    }
+
+    /// Makes the multipliers those of the iteration, a part `share` of its way from those before.
+    pub(super) fn move_links(&mut self, attempt: &Attempt, share: f64) {
+        if !attempt.has_links() {
+            return;
+        }
+        let Multipliers {
+            now,
+            change: [free, pushed],
+            before,
+            ..
+        } = &mut self.multipliers;
+        for (i, now) in now.iter_mut().enumerate() {
+            *now = before[i] + share * (free[i] + pushed[i]);
+        }
+        self.set_links(attempt);
+    }
+
+    /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}); of several schemes with rows that turn L_k with the rows at the start of the step.
+    pub(super) fn set_links(&mut self, attempt: &Attempt) {
+        let start = self.rows_before(attempt);
+        self.force.fill(0.0);
+        let system = &*attempt.system;
+        let (before, now) = (&attempt.state.links.multipliers, &self.multipliers.now);
+        for (i, row) in self.rows.iter().enumerate() {
+            for (k, &(dof, c)) in row.iter().enumerate() {
+                let [old, new] = attempt.maps.link_weights(system.zone_at(dof as usize));
+                self.force[dof as usize] += match &start {
+                    None => c * (old * before[i] + new * now[i]),
+                    Some(start) => start[i][k].1 * old * before[i] + c * new * now[i],
+                };
+            }
+        }
+    }
+
+    /// Makes velocities of the state the closest ones, in the norm of the mass, that satisfy the rows, and the multipliers
+    /// those that keep the accelerations in them.
+    ///
+    /// # Errors
+    /// Redundant rows, a mass that is not positive.
+    pub(super) fn start_links(&mut self, attempt: &mut Attempt) -> Result<(), Error> {
+        if !attempt.has_links() {
+            return Ok(());
+        }
+        let system = Arc::clone(&attempt.system);
+        let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
+        self.turn_rows_at_start(attempt);
+        let rows = Arc::clone(&self.rows);
+        let mut condensed = of_mass((&system, &rows), &mut mass)?;
+        let ones = vec![[1.0; 2]; system.parts.len()];
+        let n = system.unknowns();
+        let (mut half, mut x) = (vec![0.0; n], vec![0.0; n]);
+        let mut solve = |force: &[f64]| -> Vec<f64> {
+            mass.begin(force, &mut half);
+            mass.end(&mut half, &mut x);
+            x.clone()
+        };
+        let velocities = &mut attempt.state.motion.v;
+        let mut l: Vec<f64> = rows.iter().map(|row| on(row, velocities)).collect();
+        condensed.solve(&mut l);
+        let mut force = vec![0.0; n];
+        add_forces((&system, &rows), &ones, &l, &mut force);
+        for (v, change) in velocities.iter_mut().zip(solve(&force)) {
+            *v -= change;
+        }
+        attempt.evaluate_loads(attempt.state.time);
+        let (load, motion) = (&attempt.vectors.load, &attempt.state.motion);
+        let (inside, contact) = (&motion.internal_force, &motion.contact_force);
+        let damping = &attempt.vectors.damping;
+        let free = |i: usize| match system.fixed[i] {
+            true => 0.0,
+            false => load[i] + contact[i] - inside[i] - damping[i],
+        };
+        let balance: Vec<f64> = (0..n).map(free).collect();
+        let accelerations = solve(&balance);
+        let mut l: Vec<f64> = rows.iter().map(|row| -on(row, &accelerations)).collect();
+        for (row, own) in attempt.centripetal_rows() {
+            l[row] -= own;
+        }
+        condensed.solve(&mut l);
+        self.force.fill(0.0);
+        // held unknowns feel the links too
+        for (row, l) in rows.iter().zip(&l) {
+            for &(dof, c) in row {
+                self.force[dof as usize] += c * l;
+            }
+        }
+        attempt.state.motion.link_force.clone_from(&self.force);
+        let links = &mut attempt.state.links;
+        *links = state::Links::at_rest(&system);
+        links.mixed.fill(l.clone());
+        links.multipliers = l;
+        Ok(())
     }
 }

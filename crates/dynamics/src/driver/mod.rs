@@ -55,6 +55,7 @@ mod mean_forces;
 mod mixing;
 mod near;
 mod obstacles;
+mod owners;
 pub mod paired;
 mod part_matrix;
 mod passage;
@@ -88,163 +89,47 @@ mod turned;
 mod unfit;
 mod weak;
 
-use std::cell::RefCell;
 use std::sync::Arc;
 
 use carom_algebra::Interrupt;
-use carom_algebra::solver::Saddle;
-use carom_bodies::{Scratch, Stored};
 use carom_contact::law::{Displacement, Level};
-use carom_contact::{Contact, Law, Pairing, Search};
+use carom_contact::{Contact, Law};
 
-use crate::costs::{Costs, Phases};
-use crate::coulomb::{Coulomb, FrictionProblem, Slip};
+use crate::costs::Costs;
 use crate::error::Error;
-use crate::interface::{Candidate, Interface, InterfaceProblem};
-use crate::of_contact::OfContact;
-use crate::report::{Notices, StepReport};
-use crate::resultant::Resultant;
-use crate::scheme::EnergyIdentity;
-use crate::shapes::Rates;
-use crate::shared::Shared;
+use crate::report::StepReport;
 use crate::state::State;
 use crate::step_map::StepMap;
-use crate::system::{LinkRow, Maps, System};
+use crate::system::System;
 use crate::watch::Watch;
-use active::Active;
-use carried::Carried;
-use closings::Closings;
-use effective::Effective;
-use far::Far;
-use floating::Floating;
-use impulse::Impulses;
-use leapfrog::Direct;
-use linking::Multipliers;
-use mixing::Mixing;
-use paired::Manner;
-use passage::Passage;
+use owners::{Attempt, Balances, Contacts, Explicit, Links, Parts, RankWork, Stages};
 pub use ranked::RankShare;
-use rebound::Rebound;
-use refined::Refined;
-use scratch::{Pace, Predictor, Projected, Restoring, Squares, Vectors, Works};
-use supports::Jump;
+use scratch::Vectors;
 pub use unfit::why_not_on_ranks;
-use weak::{WeakForms, WithWeak};
 
 /// What a law in the rate is in a static stage.
 static AT_REST: Law = Law::Displacement(Displacement { projection: false });
 
 /// Takes steps.
 pub struct Driver {
-    system: Arc<System>,
+    attempt: Attempt,
+    contacts: Contacts,
+    parts: Parts,
+    links: Links,
+    stages: Stages,
+    explicit: Explicit,
+    ranks: RankWork,
+    balances: Balances,
     /// That of the dynamics, as long as bodies wait for these in a static stage.
     released: Option<Arc<System>>,
-    /// Size of the attempt under way, s, and the maps of the zones.
-    dt: f64,
-    maps: Maps,
-    /// Size and stage of these maps; none before they are made.
-    sized: Option<(f64, f64, bool)>,
-    manners: Vec<Manner>,
-    /// Whether any contact is paired where the unknown leads.
-    turns: bool,
-    /// Whether sliding is a velocity in steps of this size and stage.
-    by_rate: bool,
-    /// The energy identity of the scheme; none of a static step, or where none is known.
-    identity: Option<EnergyIdentity>,
-    effective: Effective,
-    /// For steps whose matrix is the lumped mass; none where there are no such steps.
-    direct: Option<Direct>,
-    rates: Rates,
-    /// What this process has of a run that several compute; none of one process.
-    shared: Option<Box<Shared>>,
-    /// Whether several compute it.
-    several: bool,
-    /// The last step at which it was asked whether to look at what is assumed small, of such a run.
-    looked: u64,
-    floating: Floating,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,
     /// Size of the step after that of a zone, s.
     ahead: f64,
     /// Size of the next step that an event forces, in tests, s.
     unplanned: Option<f64>,
-    /// Solver of the stages with the mass alone; none where there is no such stage.
-    impulses: Option<Impulses>,
-    projected: Projected,
-    predictor: Predictor,
-    restoring: Restoring,
-    interface: Interface,
-    /// Those of groups of candidates that do not act on each other, where there are several.
-    interfaces: Vec<Interface>,
-    /// The problem of contacts where matrices are solved with by iterations.
-    saddle: RefCell<Saddle>,
-    pairing: Pairing,
-    /// Whether its rows are those of the reference places, so that its gaps alone move.
-    rows_stand: bool,
-    /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
-    initial: Vec<Pairing>,
-    search: Vec<Search>,
-    /// Contacts whose primary sides have lost cells, and the number of deleted elements that they are for; empty as long as none has.
-    narrowed: Vec<Option<Contact>>,
-    narrowed_for: u64,
     watch: Watch,
-    active: Active,
-    passage: Passage,
-    far: Far,
-    closings: Closings,
-    rebound: Rebound,
-    /// Points that may carry a force, ascending.
-    candidates: Vec<u32>,
-    candidate_data: Vec<Candidate>,
-    /// Gaps of the candidates at the end of the step without any contact force, m; of an adaptive step.
-    free_gaps: Vec<f64>,
-    coulomb: Coulomb,
-    /// Ends the attempt under way where it is set.
-    interrupt: Interrupt,
-    weak: WeakForms,
-    with_weak: WithWeak,
-    /// Normal and tangential rows of all points, point after point, where there is friction; of steps with iterations.
-    stacked: carom_contact::Rows,
-    slips: Vec<Slip>,
-    /// Buffers of the bodies.
-    scratch: Vec<Scratch>,
-    force_sweeps: usize,
-    /// Residuals of the iterations of the last attempt, relative.
-    residuals: Vec<f64>,
-    pace: Pace,
-    mixing: Mixing,
-    refined: Refined,
-    carried: Carried,
-    jump: Jump,
-    failed: Option<InterfaceProblem>,
-    failed_friction: Option<FrictionProblem>,
-    state: State,
-    next: State,
     report: StepReport,
-    /// What the attempt went on after.
-    notices: Notices,
-    /// What the points of each contact did in the attempt: those of this process, then of all.
-    of_contacts: Vec<OfContact>,
-    /// Room for nodal forces of a contact whose moment is reported, N.
-    nodal: Vec<f64>,
-    /// Forces of the named supports in the last attempt.
-    reactions: Vec<Resultant>,
-    vectors: Vectors,
-    works: Works,
-    /// Sizes of the forces of each assembly.
-    squares: Vec<Squares>,
-    /// Energies of the iteration.
-    stored: Stored,
-    /// Forces of links in the step, N; empty without links.
-    link_force: Vec<f64>,
-    multipliers: Multipliers,
-    /// The rows of the links; those that turn as they are in the iteration.
-    rows: Arc<Vec<LinkRow>>,
-    /// Whether the residual without the forces of links, and the pairing, are those of the step.
-    prepared: bool,
-    /// Norm of the forces that the iterations of the step may leave unbalanced, N.
-    left_over: f64,
-    phases: Phases,
     /// What the run cost before this driver went on with it.
     earlier: Costs,
 }
@@ -252,12 +137,12 @@ pub struct Driver {
 impl Driver {
     /// The system.
     pub fn system(&self) -> &System {
-        &self.system
+        &self.attempt.system
     }
 
     /// The last accepted state.
     pub fn state(&self) -> &State {
-        &self.state
+        &self.attempt.state
     }
 
     /// What the last step did.
@@ -267,23 +152,30 @@ impl Driver {
 
     /// Relative residuals of the iterations of the last step.
     pub fn residuals(&self) -> &[f64] {
-        &self.residuals
+        &self.parts.residuals
     }
 
     /// What the run cost so far.
     pub fn costs(&self) -> Costs {
-        let elements: usize = self.system.bodies.iter().map(|b| b.cells().len()).sum();
+        let elements: usize = self
+            .attempt
+            .system
+            .bodies
+            .iter()
+            .map(|b| b.cells().len())
+            .sum();
         let mut costs = Costs {
-            factors: self.effective.stats().cloned().collect(),
-            work: self.effective.work(),
-            compliance_bytes: self.effective.compliance_bytes()
+            factors: self.parts.effective.stats().cloned().collect(),
+            work: self.parts.effective.work(),
+            compliance_bytes: self.parts.effective.compliance_bytes()
                 + self
+                    .explicit
                     .direct
                     .as_ref()
                     .map_or(0, |direct| direct.apart.bytes()),
-            force_sweeps: self.force_sweeps,
-            element_updates: (self.force_sweeps * elements) as u64,
-            phases: self.phases,
+            force_sweeps: self.parts.force_sweeps,
+            element_updates: (self.parts.force_sweeps * elements) as u64,
+            phases: self.attempt.phases,
             zones: Vec::new(),
         };
         costs.add(&self.earlier);
@@ -298,27 +190,26 @@ impl Driver {
     /// Ends a step early where this is set; it then fails with [`Error::Interrupted`]. Not on ranks, which all
     /// take the same steps: they end between two steps.
     pub fn heed(&mut self, interrupt: &Interrupt) {
-        if self.several {
+        if self.ranks.several {
             return;
         }
-        self.interrupt = interrupt.clone();
-        self.coulomb.interrupt = interrupt.clone();
-        for interface in std::iter::once(&mut self.interface).chain(&mut self.interfaces) {
+        self.attempt.interrupt = interrupt.clone();
+        self.contacts.coulomb.interrupt = interrupt.clone();
+        for interface in
+            std::iter::once(&mut self.contacts.interface).chain(&mut self.contacts.interfaces)
+        {
             interface.interrupt = interrupt.clone();
         }
     }
+}
 
+impl Attempt {
     /// What an attempt has come to: nothing, where somebody has asked for its end meanwhile. Part of what loops found may be missing then.
-    fn unless_interrupted(&self, outcome: Result<(), Error>) -> Result<(), Error> {
+    pub(super) fn unless_interrupted(&self, outcome: Result<(), Error>) -> Result<(), Error> {
         match self.interrupt.is_set() {
             true => Err(Error::Interrupted),
             false => outcome,
         }
-    }
-
-    /// Whether pieces float in the attempt under way.
-    pub(super) fn floats(&self) -> bool {
-        self.maps.is_static() && !self.floating.pieces.is_empty()
     }
 
     /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
@@ -340,17 +231,6 @@ impl Driver {
         !self.maps.is_static() && self.system.scheme.get().is_between()
     }
 
-    /// How long after the start of the step a contact is paired, s.
-    pub(super) fn paired_after(&self, number: usize) -> f64 {
-        let law = self.law(&self.system.contacts[number]);
-        match law.get().level() {
-            _ if self.between() => 0.5 * self.dt,
-            Level::Rate => self.captured(number) * self.dt,
-            Level::Gap => self.dt,
-            Level::GapAndRate => self.map_of(number).instant(self.dt),
-        }
-    }
-
     /// Contact, place in it and mesh node of a contact point.
     pub(super) fn name(&self, point: usize) -> String {
         let (contact, place) = self.system.point(point);
@@ -369,19 +249,7 @@ impl Driver {
         self.vectors.jumps
     }
 
-    /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
-    pub(super) fn size(&mut self, dt: f64, next: f64) {
-        self.dt = dt;
-        let sized = Some((dt, next, self.is_static()));
-        if self.sized == sized {
-            return;
-        }
-        self.sized = sized;
-        self.renew_maps(dt, next);
-        self.renew_manners();
-    }
-
-    fn renew_maps(&mut self, dt: f64, next: f64) {
+    pub(super) fn renew_maps(&mut self, dt: f64, next: f64) {
         if self.is_static() {
             self.maps.rest();
             self.identity = None;
@@ -401,6 +269,38 @@ impl Driver {
             true => self.maps.contact(),
             false => 1.0,
         }
+    }
+}
+
+impl Parts {
+    /// Whether pieces float in the attempt under way.
+    pub(super) fn floats(&self, attempt: &Attempt) -> bool {
+        attempt.maps.is_static() && !self.floating.pieces.is_empty()
+    }
+}
+
+impl Contacts {
+    /// How long after the start of the step a contact is paired, s.
+    pub(super) fn paired_after(&self, attempt: &Attempt, number: usize) -> f64 {
+        let law = attempt.law(&attempt.system.contacts[number]);
+        match law.get().level() {
+            _ if attempt.between() => 0.5 * attempt.dt,
+            Level::Rate => self.captured(attempt, number) * attempt.dt,
+            Level::Gap => attempt.dt,
+            Level::GapAndRate => attempt.map_of(number).instant(attempt.dt),
+        }
+    }
+
+    /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
+    pub(super) fn size(&mut self, attempt: &mut Attempt, dt: f64, next: f64) {
+        attempt.dt = dt;
+        let sized = Some((dt, next, attempt.is_static()));
+        if attempt.sized == sized {
+            return;
+        }
+        attempt.sized = sized;
+        attempt.renew_maps(dt, next);
+        self.renew_manners(attempt);
     }
 }
 

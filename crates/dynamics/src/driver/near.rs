@@ -8,34 +8,34 @@ use std::sync::Arc;
 
 use carom_contact::{Near, OwnPart, Pairing, Places, Sliding, Step};
 
-use super::Driver;
 use super::deletion::as_narrowed;
+use super::owners::{Attempt, Contacts};
 use super::tangents::first_thought;
 use crate::shared::Own;
 use crate::step_map::Row;
 
-impl Driver {
+impl Contacts {
     /// Takes the contact of the state before into that of the end.
-    pub(super) fn follow_interface(&mut self) {
-        let points = 0..self.system.points();
-        let (before, next) = (&self.state.interface, &mut self.next.interface);
+    pub(super) fn follow_interface(&mut self, attempt: &mut Attempt) {
+        let points = 0..attempt.system.points();
+        let (before, next) = (&attempt.state.interface, &mut attempt.next.interface);
         if !self.active.begin() {
             next.follow(before);
-            self.guess_slips();
+            self.guess_slips(attempt);
         } else {
             next.follow_at(before, self.active.within(points.clone()));
-            if self.system.tangents() > 0 {
+            if attempt.system.tangents() > 0 {
                 for point in self.active.within(points.clone()) {
                     self.slips[point] = first_thought(&next.friction[point]);
                 }
             }
         }
-        self.take_weak();
+        self.take_weak(attempt);
     }
 
     /// Pairs the near points, in the configurations that are known.
-    pub(super) fn pair_near(&mut self) {
-        let system = Arc::clone(&self.system);
+    pub(super) fn pair_near(&mut self, attempt: &mut Attempt) {
+        let system = Arc::clone(&attempt.system);
         let mut pairing = std::mem::take(&mut self.pairing);
         self.rows_stand = false;
         let begins = self.active.begins();
@@ -48,8 +48,8 @@ impl Driver {
         }
         let mut placed = None;
         for number in 0..system.contacts.len() {
-            pairing.span = self.span(number);
-            self.pair_near_of(number, &mut placed, &mut pairing);
+            pairing.span = self.span(attempt, number);
+            self.pair_near_of(attempt, number, &mut placed, &mut pairing);
         }
         if !begins {
             self.active.take(pairing.near());
@@ -58,8 +58,14 @@ impl Driver {
     }
 
     /// `placed`: configuration of the contact before.
-    fn pair_near_of(&mut self, number: usize, placed: &mut Option<Row>, pairing: &mut Pairing) {
-        let system = Arc::clone(&self.system);
+    pub(super) fn pair_near_of(
+        &mut self,
+        attempt: &mut Attempt,
+        number: usize,
+        placed: &mut Option<Row>,
+        pairing: &mut Pairing,
+    ) {
+        let system = Arc::clone(&attempt.system);
         let (contact, first) = (
             as_narrowed(&self.narrowed, &system, number),
             system.contacts[number].range.start,
@@ -72,31 +78,33 @@ impl Driver {
                 nodes: &part.nodes,
             }),
         };
-        let time = self.state.time + self.paired_after(number);
+        let time = attempt.state.time + self.paired_after(attempt, number);
         let (row, map) = (
-            self.paired_at(number).row(self.maps.first()),
-            self.maps.first(),
+            self.paired_at(number).row(attempt.maps.first()),
+            attempt.maps.first(),
         );
         if row != map.displacement {
-            let xc = [&self.vectors.x[..], &self.vectors.push];
-            let place = &mut self.vectors.place;
+            let xc = [&attempt.vectors.x[..], &attempt.vectors.push];
+            let place = &mut attempt.vectors.place;
             place.resize(system.unknowns(), 0.0);
-            self.maps.whole(|_| row, &self.state.motion, xc, place);
+            attempt
+                .maps
+                .whole(|_| row, &attempt.state.motion, xc, place);
         }
         let u = match row == map.displacement {
-            true => &self.next.motion.u,
-            false => &self.vectors.place,
+            true => &attempt.next.motion.u,
+            false => &attempt.vectors.place,
         };
-        let places = system.places(time, u, &self.state.motion.frames);
+        let places = system.places(time, u, &attempt.state.motion.frames);
         let (search, initial) = (&mut self.search[number], &mut self.initial[number]);
         if placed.replace(row) != Some(row) {
             self.far.forget_places();
         }
         let reach = self.active.reach(number);
         let start = system.places(
-            self.state.time,
-            &self.state.motion.u,
-            &self.state.motion.frames,
+            attempt.state.time,
+            &attempt.state.motion.u,
+            &attempt.state.motion.frames,
         );
         let is_end = row == map.displacement;
         let far = &mut self.far;
@@ -109,15 +117,15 @@ impl Driver {
         if contact.sliding == Sliding::Small && (initial.is_empty() || contact.moves()) {
             initial.clear();
             initial.span = pairing.span;
-            self.vectors.work.clear();
-            self.vectors.work.resize(system.unknowns(), 0.0);
+            attempt.vectors.work.clear();
+            attempt.vectors.work.resize(system.unknowns(), 0.0);
             let reference = Places {
-                u: &self.vectors.work,
+                u: &attempt.vectors.work,
                 ..places
             };
             contact.pair_fully(&reference, search, initial);
         }
-        let gaps = &self.state.interface.gap;
+        let gaps = &attempt.state.interface.gap;
         // motions of steps bound what can touch where points are paired with their ends
         let step = Step {
             start: &start,

@@ -27,11 +27,14 @@ use crate::step_terms::Jump;
 impl Driver {
     /// Projects the end of the step if points of laws with projection have closed in it.
     pub(super) fn project(&mut self) -> Result<(), Error> {
-        self.projected.clear();
-        if self.impulses.is_none() || self.maps.is_static() || !self.projected_points() {
+        self.stages.projected.clear();
+        if self.stages.impulses.is_none()
+            || self.attempt.maps.is_static()
+            || !self.projected_points()
+        {
             return Ok(());
         }
-        let identity = self.identity_of_ledger();
+        let identity = self.attempt.identity_of_ledger();
         let mut jump = Jump {
             impulses: self.project_velocity()?,
             ..Jump::default()
@@ -44,7 +47,7 @@ impl Driver {
 
     /// Works of the impulses after the step, J: on the motion relative to obstacles, and of the obstacles.
     pub(super) fn works_of_impulses(&self) -> (f64, f64) {
-        let (projected, rows) = (&self.projected, &self.pairing.rows);
+        let (projected, rows) = (&self.stages.projected, &self.contacts.pairing.rows);
         let points = projected.points.iter().map(|&point| point as usize);
         let of_obstacle = |point: usize| -projected.impulse(point) * rows.rate(point);
         (projected.work.iter().sum(), points.map(of_obstacle).sum())
@@ -52,25 +55,28 @@ impl Driver {
 
     /// Enters a jump of the motion after the step into the ledger.
     pub(super) fn enter_jump(&mut self, mut jump: Jump) {
-        let system = Arc::clone(&self.system);
-        let identity = self.identity_of_ledger();
-        let mut springs = std::mem::take(&mut self.works.springs);
+        let system = Arc::clone(&self.attempt.system);
+        let identity = self.attempt.identity_of_ledger();
+        let mut springs = std::mem::take(&mut self.balances.works.springs);
         springs.clear();
         if system.is_nonlinear() && system.has_springs {
-            self.vectors.place.copy_from_slice(&self.next.motion.u);
-            self.springs_at_place(false, &mut springs);
+            self.attempt
+                .vectors
+                .place
+                .copy_from_slice(&self.attempt.next.motion.u);
+            self.attempt.springs_at_place(false, &mut springs);
         }
-        let (nonlinear, factor) = (system.is_nonlinear(), self.contact_factor());
-        let (old, new) = (&self.state.motion, &self.next.motion);
+        let (nonlinear, factor) = (system.is_nonlinear(), self.attempt.contact_factor());
+        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
         let Vectors {
             work,
             inertia,
             load,
             damping,
             ..
-        } = &mut self.vectors;
+        } = &mut self.attempt.vectors;
         let u = nonlinear.then_some(&new.u[..]);
-        let of = (self.stored.strain, identity.inertia != 0.0, u);
+        let of = (self.parts.stored.strain, identity.inertia != 0.0, u);
         let energies = energies(&system, new, of, work);
         system.mass.multiply(&new.a, inertia);
         if nonlinear {
@@ -90,8 +96,8 @@ impl Driver {
             let spring = |i: usize| springs.get(i).unwrap_or(&0.0);
             let own =
                 |i: usize| work[i] + held(i) + load[i] + new.link_of(i) - damping[i] - spring(i);
-            self.next.exchange.renew(&system, own);
-            let kept = &mut self.next.forces;
+            self.attempt.next.exchange.renew(&system, own);
+            let kept = &mut self.attempt.next.forces;
             if !kept.reaction.is_empty() {
                 if !new.link_force.is_empty() {
                     kept.link.copy_from_slice(&new.link_force);
@@ -105,32 +111,33 @@ impl Driver {
             for (reaction, spring) in work.iter_mut().zip(&springs) {
                 *reaction -= spring;
             }
-            self.works.springs = springs;
+            self.balances.works.springs = springs;
         } else {
-            reactions(&system, self.maps.first(), old, new, inertia, work);
-            self.take_linear_springs();
-            let (new, work) = (&self.next.motion, &self.vectors.work);
+            reactions(&system, self.attempt.maps.first(), old, new, inertia, work);
+            self.attempt.take_linear_springs();
+            let (new, work) = (&self.attempt.next.motion, &self.attempt.vectors.work);
             let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
-            self.next.exchange.renew(&system, own);
+            self.attempt.next.exchange.renew(&system, own);
         }
-        let (new, work) = (&self.next.motion, &self.vectors.work);
+        let (new, work) = (&self.attempt.next.motion, &self.attempt.vectors.work);
         jump.contacts = Resultant::of(&system, &new.contact_force);
         jump.supports = Resultant::of(&system, work);
-        let half = &mut self.vectors.half;
+        let half = &mut self.attempt.vectors.half;
         half.fill(0.0);
-        add_all_forces(&system, &self.projected.links, half);
+        add_all_forces(&system, &self.stages.projected.links, half);
         jump.links = Resultant::of(&system, half);
-        self.next.ledger.jump(&identity, &energies, &jump);
+        self.attempt.next.ledger.jump(&identity, &energies, &jump);
     }
 
     /// Lists the closed points of laws with projection; whether any of them has just closed.
     fn projected_points(&mut self) -> bool {
-        let points = &mut self.projected.points;
-        let [before, now] = [&self.state, &self.next].map(|state| &state.interface.status);
+        let points = &mut self.stages.projected.points;
+        let [before, now] =
+            [&self.attempt.state, &self.attempt.next].map(|state| &state.interface.status);
         let mut closing = false;
-        for &point in &self.candidates {
+        for &point in &self.contacts.candidates {
             let at = point as usize;
-            if now[at] != Status::Open && self.system.point(at).0.law.projects() {
+            if now[at] != Status::Open && self.attempt.system.point(at).0.law.projects() {
                 points.push(point);
                 closing |= before[at] == Status::Open;
             }
@@ -140,18 +147,18 @@ impl Driver {
 
     /// Projects the velocity; impulses on the momentum from contacts, supports and links.
     fn project_velocity(&mut self) -> Result<OutsideForces<Resultant>, Error> {
-        let weights = self.maps.first().contact_impulse;
-        let [old, new] = [&self.state, &self.next].map(|state| &state.interface);
-        let rows = &self.pairing.rows;
-        let projected = &mut self.projected;
+        let weights = self.attempt.maps.first().contact_impulse;
+        let [old, new] = [&self.attempt.state, &self.attempt.next].map(|state| &state.interface);
+        let rows = &self.contacts.pairing.rows;
+        let projected = &mut self.stages.projected;
         projected.values.clear();
         projected.present.clear();
         for &point in &projected.points {
             let at = point as usize;
-            let rate = rows.product(at, &self.next.motion.v) + rows.rate(at);
+            let rate = rows.product(at, &self.attempt.next.motion.v) + rows.rate(at);
             projected.values.push(rate);
             let mean = weights.old * old.carried[at] + weights.new * new.force[at];
-            projected.present.push(self.dt * mean);
+            projected.present.push(self.attempt.dt * mean);
         }
         self.solve_impulses()?;
         Ok(self.jump_velocity())
@@ -160,11 +167,14 @@ impl Driver {
     /// Adds what the impulses of the stage change in the velocity, from the rates in `values`; impulses on the momentum from
     /// contacts, supports and links.
     pub(super) fn jump_velocity(&mut self) -> OutsideForces<Resultant> {
-        let system = Arc::clone(&self.system);
-        let Some(stage) = &self.impulses else {
+        let system = Arc::clone(&self.attempt.system);
+        let Some(stage) = &self.stages.impulses else {
             return OutsideForces::default();
         };
-        let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
+        let (motion, interface) = (
+            &mut self.attempt.next.motion,
+            &mut self.attempt.next.interface,
+        );
         for (v, change) in motion.v.iter_mut().zip(&stage.change) {
             *v += change;
         }
@@ -173,9 +183,9 @@ impl Driver {
             work,
             half,
             ..
-        } = &mut self.vectors;
+        } = &mut self.attempt.vectors;
         known.fill(0.0);
-        let (projected, rows) = (&mut self.projected, &self.pairing.rows);
+        let (projected, rows) = (&mut self.stages.projected, &self.contacts.pairing.rows);
         for (k, &point) in projected.points.iter().enumerate() {
             let at = point as usize;
             let impulse = stage.added[k];
@@ -201,7 +211,7 @@ impl Driver {
         for (own, link) in work.iter_mut().zip(half) {
             *own += *link;
         }
-        self.next.exchange.jump(&system, work);
+        self.attempt.next.exchange.jump(&system, work);
         OutsideForces {
             contacts: contact,
             supports,
@@ -212,8 +222,8 @@ impl Driver {
 
     /// Projects the acceleration and the force that the next step begins with; change of |a|²_M.
     fn project_acceleration(&mut self) -> Result<f64, Error> {
-        let projected = &mut self.projected;
-        let Some(stage) = &self.impulses else {
+        let projected = &mut self.stages.projected;
+        let Some(stage) = &self.stages.impulses else {
             return Ok(0.0);
         };
         projected.values.clear();
@@ -222,21 +232,31 @@ impl Driver {
             let at = point as usize;
             // points that the projection lets go have no acceleration to lose: their force ends with the step
             projected.values.push(match stage.active[k] {
-                true => self.pairing.rows.product(at, &self.next.motion.a),
+                true => self
+                    .contacts
+                    .pairing
+                    .rows
+                    .product(at, &self.attempt.next.motion.a),
                 false => f64::INFINITY,
             });
-            projected.present.push(self.next.interface.force[at]);
+            projected
+                .present
+                .push(self.attempt.next.interface.force[at]);
         }
         self.solve_impulses()?;
-        let Some(stage) = &self.impulses else {
+        let Some(stage) = &self.stages.impulses else {
             return Ok(0.0);
         };
-        let (motion, interface) = (&mut self.next.motion, &mut self.next.interface);
-        let Vectors { place: known, .. } = &mut self.vectors;
+        let (motion, interface) = (
+            &mut self.attempt.next.motion,
+            &mut self.attempt.next.interface,
+        );
+        let Vectors { place: known, .. } = &mut self.attempt.vectors;
         known.fill(0.0);
-        for (k, &point) in self.projected.points.iter().enumerate() {
+        for (k, &point) in self.stages.projected.points.iter().enumerate() {
             interface.carried[point as usize] += stage.added[k];
-            self.pairing
+            self.contacts
+                .pairing
                 .rows
                 .add_force(point as usize, stage.added[k], known);
         }
@@ -248,8 +268,8 @@ impl Driver {
             *f += change;
         }
         if !stage.links.is_empty() {
-            self.projected.links.extend_from_slice(&stage.links);
-            add_all_forces(&self.system, &stage.links, &mut motion.link_force);
+            self.stages.projected.links.extend_from_slice(&stage.links);
+            add_all_forces(&self.attempt.system, &stage.links, &mut motion.link_force);
         }
         // a vanishes at the supports, so that |a'|²_M - |a|²_M = Nᵀ Q · (a + a')
         Ok(before + dot(known, &motion.a))
@@ -261,20 +281,23 @@ impl Driver {
             values,
             present,
             ..
-        } = &self.projected;
-        let Some(stage) = &mut self.impulses else {
+        } = &self.stages.projected;
+        let Some(stage) = &mut self.stages.impulses else {
             return Ok(());
         };
         // laws with projection have no weak form: the ratio of impulse and force enters nothing
-        let weak = (&self.weak, 1.0);
+        let weak = (&self.contacts.weak, 1.0);
         let solved = stage.solve(
-            &self.system,
+            &self.attempt.system,
             weak,
-            &self.pairing.rows,
+            &self.contacts.pairing.rows,
             points,
             values,
             present,
         );
-        solved.map_err(|failure| self.interface_error(failure, &self.projected.points))
+        solved.map_err(|failure| {
+            self.attempt
+                .interface_error(failure, &self.stages.projected.points)
+        })
     }
 }

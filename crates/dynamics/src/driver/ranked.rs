@@ -14,6 +14,7 @@ use carom_ranks::Ranks;
 use super::Driver;
 use super::far::Far;
 use super::leapfrog::Direct;
+use super::owners::{Attempt, Contacts, Parts};
 use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
 use crate::of_contact::OfContact;
@@ -61,7 +62,7 @@ impl Driver {
             .and_then(|begin| Ok((begin, Driver::from_saved(&system, saved)?)));
         let (begin, mut driver) = of_all(ranks, begun)?;
         watched.give(&system, ranks);
-        let given = begin.give((&system, ranks), &mut driver.state);
+        let given = begin.give((&system, ranks), &mut driver.attempt.state);
         of_all(ranks, given)?;
         driver.share(ranks, (watched, begin.of_first()));
         Ok(driver)
@@ -95,7 +96,7 @@ impl Driver {
         ranks: &Ranks,
     ) -> Result<Driver, Error> {
         let mut driver = Driver::from_saved(system, saved)?;
-        driver.effective.share(ranks);
+        driver.parts.effective.share(ranks);
         Ok(driver)
     }
 
@@ -111,40 +112,42 @@ impl Driver {
 
     /// Shares the steps with other ranks. `own`: the elements of this one.
     fn share(&mut self, ranks: &Ranks, (watched, own): (&Watched, OwnElements)) {
-        let system = Arc::clone(&self.system);
-        let map = self.maps.first();
-        let at_ends = |contact: usize| self.paired_at(contact).row(map) == map.displacement;
-        let in_reach = InReach::new(&system, &self.active.reaches, at_ends);
-        let given = (in_reach, &self.state);
+        let system = Arc::clone(&self.attempt.system);
+        let map = self.attempt.maps.first();
+        let at_ends =
+            |contact: usize| self.contacts.paired_at(contact).row(map) == map.displacement;
+        let in_reach = InReach::new(&system, &self.contacts.active.reaches, at_ends);
+        let given = (in_reach, &self.attempt.state);
         let mut shared = Shared::new(&system, ranks, (watched, own), given);
-        shared.take_looks(&system, &self.state.shapes.looks);
+        shared.take_looks(&system, &self.attempt.state.shapes.looks);
         if !shared.is_first() {
-            self.state.shapes.looks = Vec::new();
+            self.attempt.state.shapes.looks = Vec::new();
             // what was counted so far is the first rank's
-            let records = &mut self.state.records.contacts;
+            let records = &mut self.attempt.state.records.contacts;
             for record in records {
                 let (counts, impulse) = record.counts_mut();
                 counts.into_iter().for_each(|count| *count = 0);
                 *impulse = 0.0;
             }
         }
-        if let Some(mut direct) = self.direct.take() {
-            self.take_homes(&mut shared, &mut direct);
-            self.active.look_to(&shared.in_reach);
-            self.direct = Some(direct);
+        if let Some(mut direct) = self.explicit.direct.take() {
+            self.contacts
+                .take_homes(&self.attempt, &mut shared, &mut direct);
+            self.contacts.active.look_to(&shared.in_reach);
+            self.explicit.direct = Some(direct);
         }
-        self.shared = Some(Box::new(shared));
-        self.several = true;
+        self.ranks.shared = Some(Box::new(shared));
+        self.ranks.several = true;
     }
 
     /// Whether several ranks take the steps.
     pub(super) fn is_shared(&self) -> bool {
-        self.several
+        self.ranks.several
     }
 
     /// Places of the elements that this rank computes among those of each body, ascending; none where ranks share no elements.
     pub fn own_elements(&self) -> Option<Vec<Vec<u32>>> {
-        let shared = self.shared.as_ref()?;
+        let shared = self.ranks.shared.as_ref()?;
         let of_body = |shares: &[Share; 2]| {
             let mut places = shares.each_ref().map(Share::places).concat();
             places.sort_unstable();
@@ -155,23 +158,195 @@ impl Driver {
 
     /// What this rank has and sends; none of a run in one process.
     pub fn rank_share(&self) -> Option<RankShare> {
-        let shared = self.shared.as_ref()?;
+        let shared = self.ranks.shared.as_ref()?;
         let elements = shared.bodies().flatten();
         Some(RankShare {
             elements: elements.map(|share| share.places().len()).sum(),
             nodes: shared.halo.present.len(),
-            points: self.active.own_points(),
+            points: self.contacts.active.own_points(),
             looked_points: shared.looked,
             contact_shares: shared.found_homes,
-            halo_bytes: shared.halo.bytes(self.system.dim),
+            halo_bytes: shared.halo.bytes(self.attempt.system.dim),
             sent_bytes: shared.ranks.sent_bytes(),
             shared_nodes: shared.shared_nodes(),
         })
     }
 
+    /// Takes the attempt on all ranks.
+    pub(super) fn step_on_ranks(
+        &mut self,
+        shared: &mut Shared,
+        direct: &mut Direct,
+        clean: bool,
+    ) -> Result<(), Error> {
+        let (begin, before) = (Instant::now(), self.attempt.phases);
+        let (dim, mut clean) = (self.attempt.system.dim, clean);
+        if shared.in_reach.is_due(&self.attempt.system) {
+            if shared.look_for_faces(&self.attempt.system, &mut self.attempt.state) {
+                self.contacts.take_homes(&self.attempt, shared, direct);
+                clean = false;
+            }
+            self.contacts.active.look_to(&shared.in_reach);
+        }
+        self.parts.begin_leap(&mut self.attempt, direct, clean);
+        self.attempt.place_end(direct);
+        let forced = self
+            .parts
+            .forces_on_ranks(&mut self.attempt, shared, direct);
+        let loads = self.attempt.loads_of_end(direct.loaded);
+        let mut failed = forced.err();
+        self.contacts.follow_interface(&mut self.attempt);
+        if failed.is_none() {
+            failed = self.touch(direct, loads).err();
+        }
+        let forces = &mut self.attempt.next.motion.contact_force;
+        shared.pass_contact_forces(dim, forces, |node| direct.touch(node));
+        self.attempt.count_contact(begin, before);
+        let begin = Instant::now();
+        self.end_motion(direct, loads);
+        direct.sum_parts();
+        let rank = shared.ranks.rank();
+        self.report_supports(loads, &|node| shared.halo.counts(node, rank));
+        self.contacts.end_points(&mut self.attempt);
+        self.report_own_contacts();
+        let mut contacts = std::mem::take(&mut self.contacts.of_contacts);
+        let energies = (&mut self.parts.stored, &mut self.balances.reactions[..]);
+        let parts = &mut direct.parts[..];
+        let told = Told {
+            failed: failed.is_some(),
+            passes: match self.contacts.candidates.is_empty() {
+                true => 0,
+                false => self.contacts.interface.passes,
+            },
+        };
+        let told = shared.sum_up(parts, energies, &mut contacts, &told);
+        if shared.in_reach.travel(&self.attempt.system, &contacts) {
+            self.contacts.of_contacts = contacts;
+            return self.step_on_ranks(shared, direct, false);
+        }
+        if told.failed {
+            return Err(of_ranks(&shared.ranks, failed));
+        }
+        self.contacts.interface.passes = told.passes;
+        let sums = direct.total(self.attempt.system.axisymmetric);
+        self.know_end(&sums, direct);
+        self.contacts.know_gaps(&mut self.attempt, &mut contacts);
+        let records = &self.attempt.state.records.contacts;
+        shared.sum_contacts(
+            &mut contacts,
+            (records, self.attempt.state.time + self.attempt.dt),
+        );
+        if self.attempt.impacts_change(&contacts) {
+            let velocities = [
+                &mut self.attempt.state.motion.v[..],
+                &mut self.attempt.next.motion.v,
+            ];
+            shared.gather_velocities(dim, velocities);
+        }
+        self.contacts.of_contacts = contacts;
+        self.end_directly(&sums, direct);
+        self.attempt.phases.balance += begin.elapsed();
+        Ok(())
+    }
+
+    /// What the contact points of this rank did.
+    fn report_own_contacts(&mut self) {
+        self.report_contacts();
+        let map = self.attempt.maps.first();
+        for k in 0..self.contacts.of_contacts.len() {
+            let in_steps = self.contacts.paired_at(k).row(map) == map.displacement;
+            let Own::Some(own) = self.contacts.active.own_of(k) else {
+                continue;
+            };
+            self.contacts.of_contacts[k].motion = match (in_steps, own.nodes.is_empty()) {
+                (false, _) => f64::INFINITY,
+                (true, true) => 0.0,
+                (true, false) => self.contacts.search[k].motion(),
+            };
+        }
+    }
+
+    /// That no entry of the attempt that this rank has is infinite or no number, on any rank.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`].
+    pub(super) fn check_finite_on_ranks(&self) -> Result<(), Error> {
+        let found = self.attempt.check_finite();
+        let Some(shared) = &self.ranks.shared else {
+            return found;
+        };
+        let text = found.err().map(|error| error.to_string());
+        match shared.ranks.first_text(text.as_deref()) {
+            None => Ok(()),
+            Some((rank, cause)) => Err(Error::OnRank { rank, cause }),
+        }
+    }
+
+    /// See [`Stepper::agree`](crate::Stepper::agree).
+    pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
+        match &self.ranks.shared {
+            Some(shared) => own.of_all(&shared.ranks),
+            None => own,
+        }
+    }
+
+    /// See [`Stepper::bring`](crate::Stepper::bring).
+    pub(super) fn bring_on_ranks(&mut self, scope: Scope) {
+        let Some(mut shared) = self.ranks.shared.take() else {
+            return;
+        };
+        let (system, dim) = (Arc::clone(&self.attempt.system), self.attempt.system.dim);
+        let step = self.attempt.state.step;
+        let asks = shared.is_first() && step > self.ranks.looked;
+        let is_due = |assembly: usize| asks && is_due(&self.attempt.state, step, assembly);
+        let due: Vec<bool> = (0..system.assemblies.all.len()).map(is_due).collect();
+        self.ranks.looked = step;
+        // the numbers of the looks at each body, zero where there is none: assemblies of a rank are of its part of the model
+        let look = |body: usize| {
+            let assembly = system.assemblies.of_part[system.part_of_body[body]];
+            match due[assembly] {
+                true => (self.attempt.state.records.small.looked[assembly].looks + 1) as f64,
+                false => 0.0,
+            }
+        };
+        let mut said = vec![f64::from(scope as u8), f64::from(due.contains(&true))];
+        said.extend((0..system.bodies.len()).map(look));
+        shared.ranks.broadcast(&mut said);
+        let (scope, is_due) = (Scope::of(said[0]), said[1] != 0.0);
+        shared.bring(dim, scope, &mut self.attempt.state);
+        if scope == Scope::All {
+            shared.gather_looks(&system, &mut self.attempt.state.shapes.looks);
+        }
+        self.report.partial = scope != Scope::All && shared.is_first();
+        if is_due {
+            shared.bring_contacts(dim, &mut self.attempt.state);
+            let u = &self.attempt.state.motion.u;
+            let found = shared.distortions(u, &said[2..]);
+            let bending = shared.bending(u);
+            if shared.is_first() {
+                let of = |body: usize, _: (&[f64], usize), _: &Distortion| OfBody {
+                    distortion: found[body],
+                    bending: bending[body],
+                    // springs are not shared
+                    across: None,
+                };
+                let state = &mut self.attempt.state;
+                self.watch.look((&system, &due), &of, state);
+            }
+        }
+        self.ranks.shared = Some(shared);
+    }
+}
+
+impl Contacts {
     /// Takes the contact points that this rank has now.
-    fn take_homes(&mut self, shared: &mut Shared, direct: &mut Direct) {
-        let system = Arc::clone(&self.system);
+    pub(super) fn take_homes(
+        &mut self,
+        attempt: &Attempt,
+        shared: &mut Shared,
+        direct: &mut Direct,
+    ) {
+        let system = Arc::clone(&attempt.system);
         let own = shared.own_points(&system);
         self.narrowed.resize(system.contacts.len(), None);
         for (number, own) in own.iter().enumerate() {
@@ -194,202 +369,56 @@ impl Driver {
         self.forget_step(direct);
     }
 
-    /// Takes the attempt on all ranks.
-    pub(super) fn step_on_ranks(
-        &mut self,
-        shared: &mut Shared,
-        direct: &mut Direct,
-        clean: bool,
-    ) -> Result<(), Error> {
-        let (begin, before) = (Instant::now(), self.phases);
-        let (dim, mut clean) = (self.system.dim, clean);
-        if shared.in_reach.is_due(&self.system) {
-            if shared.look_for_faces(&self.system, &mut self.state) {
-                self.take_homes(shared, direct);
-                clean = false;
-            }
-            self.active.look_to(&shared.in_reach);
-        }
-        self.begin_leap(direct, clean);
-        self.place_end(direct);
-        let forced = self.forces_on_ranks(shared, direct);
-        let loads = self.loads_of_end(direct.loaded);
-        let mut failed = forced.err();
-        self.follow_interface();
-        if failed.is_none() {
-            failed = self.touch(direct, loads).err();
-        }
-        let forces = &mut self.next.motion.contact_force;
-        shared.pass_contact_forces(dim, forces, |node| direct.touch(node));
-        self.count_contact(begin, before);
-        let begin = Instant::now();
-        self.end_motion(direct, loads);
-        direct.sum_parts();
-        let rank = shared.ranks.rank();
-        self.report_supports(loads, &|node| shared.halo.counts(node, rank));
-        self.end_points();
-        self.report_own_contacts();
-        let mut contacts = std::mem::take(&mut self.of_contacts);
-        let energies = (&mut self.stored, &mut self.reactions[..]);
-        let parts = &mut direct.parts[..];
-        let told = Told {
-            failed: failed.is_some(),
-            passes: match self.candidates.is_empty() {
-                true => 0,
-                false => self.interface.passes,
-            },
-        };
-        let told = shared.sum_up(parts, energies, &mut contacts, &told);
-        if shared.in_reach.travel(&self.system, &contacts) {
-            self.of_contacts = contacts;
-            return self.step_on_ranks(shared, direct, false);
-        }
-        if told.failed {
-            return Err(of_ranks(&shared.ranks, failed));
-        }
-        self.interface.passes = told.passes;
-        let sums = direct.total(self.system.axisymmetric);
-        self.know_end(&sums, direct);
-        self.know_gaps(&mut contacts);
-        let records = &self.state.records.contacts;
-        shared.sum_contacts(&mut contacts, (records, self.state.time + self.dt));
-        if self.impacts_change(&contacts) {
-            let velocities = [&mut self.state.motion.v[..], &mut self.next.motion.v];
-            shared.gather_velocities(dim, velocities);
-        }
-        self.of_contacts = contacts;
-        self.end_directly(&sums, direct);
-        self.phases.balance += begin.elapsed();
-        Ok(())
-    }
-
-    /// What the contact points of this rank did.
-    fn report_own_contacts(&mut self) {
-        self.report_contacts();
-        let map = self.maps.first();
-        for k in 0..self.of_contacts.len() {
-            let in_steps = self.paired_at(k).row(map) == map.displacement;
-            let Own::Some(own) = self.active.own_of(k) else {
-                continue;
-            };
-            self.of_contacts[k].motion = match (in_steps, own.nodes.is_empty()) {
-                (false, _) => f64::INFINITY,
-                (true, true) => 0.0,
-                (true, false) => self.search[k].motion(),
-            };
-        }
-    }
-
     /// Leaves out gaps beyond what counts in a step with the motion of all nodes, and tells what is recorded of contacts of which no point was
     /// looked at.
-    fn know_gaps(&mut self, contacts: &mut [OfContact]) {
-        let interface = &mut self.next.interface;
+    pub(super) fn know_gaps(&self, attempt: &mut Attempt, contacts: &mut [OfContact]) {
+        let interface = &mut attempt.next.interface;
         for (k, of) in contacts.iter_mut().enumerate() {
-            let reach = self.system.contacts[k].reach(of.motion, self.active.reaches[k]);
+            let reach = attempt.system.contacts[k].reach(of.motion, self.active.reaches[k]);
             if of.report.gap > reach {
                 of.report.gap = f64::INFINITY;
             }
-            for point in self.active.within(self.system.points_of(k)) {
+            for point in self.active.within(attempt.system.points_of(k)) {
                 if interface.gap[point] > reach {
                     (interface.gap[point], interface.rate[point]) = (f64::INFINITY, 0.0);
                 }
             }
             if !of.near {
-                of.passing = self.state.records.contacts[k].passing;
+                of.passing = attempt.state.records.contacts[k].passing;
             }
         }
     }
+}
 
+impl Parts {
     /// Internal forces and histories of the end, at the nodes of this rank.
-    fn forces_on_ranks(&mut self, shared: &mut Shared, direct: &Direct) -> Result<(), Error> {
+    pub(super) fn forces_on_ranks(
+        &mut self,
+        attempt: &mut Attempt,
+        shared: &mut Shared,
+        direct: &Direct,
+    ) -> Result<(), Error> {
         let begin = Instant::now();
         self.force_sweeps += 1;
-        let dim = self.system.dim;
+        let dim = attempt.system.dim;
         for block in &direct.blocks {
-            block.nodes.clear(dim, &mut self.next.motion.internal_force);
+            block
+                .nodes
+                .clear(dim, &mut attempt.next.motion.internal_force);
         }
-        let motions = (&self.state.motion, &mut self.next.motion, self.dt);
-        let stored = shared.forces(&self.system, motions);
-        self.phases.forces += begin.elapsed();
+        let motions = (&attempt.state.motion, &mut attempt.next.motion, attempt.dt);
+        let stored = shared.forces(&attempt.system, motions);
+        attempt.phases.forces += begin.elapsed();
         self.stored = stored?;
         Ok(())
     }
+}
 
+impl Attempt {
     /// Whether an impact of a contact begins or ends in the step.
-    fn impacts_change(&self, contacts: &[OfContact]) -> bool {
+    pub(super) fn impacts_change(&self, contacts: &[OfContact]) -> bool {
         let mut records = self.state.records.contacts.iter().zip(contacts);
         records.any(|(record, of)| record.changes(of.report.closed > 0))
-    }
-
-    /// That no entry of the attempt that this rank has is infinite or no number, on any rank.
-    ///
-    /// # Errors
-    /// [`Error::NotFinite`].
-    pub(super) fn check_finite_on_ranks(&self) -> Result<(), Error> {
-        let found = self.check_finite();
-        let Some(shared) = &self.shared else {
-            return found;
-        };
-        let text = found.err().map(|error| error.to_string());
-        match shared.ranks.first_text(text.as_deref()) {
-            None => Ok(()),
-            Some((rank, cause)) => Err(Error::OnRank { rank, cause }),
-        }
-    }
-
-    /// See [`Stepper::agree`](crate::Stepper::agree).
-    pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
-        match &self.shared {
-            Some(shared) => own.of_all(&shared.ranks),
-            None => own,
-        }
-    }
-
-    /// See [`Stepper::bring`](crate::Stepper::bring).
-    pub(super) fn bring_on_ranks(&mut self, scope: Scope) {
-        let Some(mut shared) = self.shared.take() else {
-            return;
-        };
-        let (system, dim) = (Arc::clone(&self.system), self.system.dim);
-        let step = self.state.step;
-        let asks = shared.is_first() && step > self.looked;
-        let is_due = |assembly: usize| asks && is_due(&self.state, step, assembly);
-        let due: Vec<bool> = (0..system.assemblies.all.len()).map(is_due).collect();
-        self.looked = step;
-        // the numbers of the looks at each body, zero where there is none: assemblies of a rank are of its part of the model
-        let look = |body: usize| {
-            let assembly = system.assemblies.of_part[system.part_of_body[body]];
-            match due[assembly] {
-                true => (self.state.records.small.looked[assembly].looks + 1) as f64,
-                false => 0.0,
-            }
-        };
-        let mut said = vec![f64::from(scope as u8), f64::from(due.contains(&true))];
-        said.extend((0..system.bodies.len()).map(look));
-        shared.ranks.broadcast(&mut said);
-        let (scope, is_due) = (Scope::of(said[0]), said[1] != 0.0);
-        shared.bring(dim, scope, &mut self.state);
-        if scope == Scope::All {
-            shared.gather_looks(&system, &mut self.state.shapes.looks);
-        }
-        self.report.partial = scope != Scope::All && shared.is_first();
-        if is_due {
-            shared.bring_contacts(dim, &mut self.state);
-            let u = &self.state.motion.u;
-            let found = shared.distortions(u, &said[2..]);
-            let bending = shared.bending(u);
-            if shared.is_first() {
-                let of = |body: usize, _: (&[f64], usize), _: &Distortion| OfBody {
-                    distortion: found[body],
-                    bending: bending[body],
-                    // springs are not shared
-                    across: None,
-                };
-                let state = &mut self.state;
-                self.watch.look((&system, &due), &of, state);
-            }
-        }
-        self.shared = Some(shared);
     }
 }
 

@@ -11,6 +11,7 @@
 use std::sync::Arc;
 
 use super::Driver;
+use super::owners::{Attempt, Contacts};
 use super::rebound::Rebound;
 use crate::error::Error;
 
@@ -21,53 +22,46 @@ const HALVINGS: u32 = 40;
 const ROUNDING: f64 = 1e-12;
 
 impl Driver {
-    /// The part s of the coefficient of restitution that a point has.
-    pub(super) fn rebound_of(&self, point: usize) -> f64 {
-        if !self.rebound.any {
-            return 1.0;
-        }
-        let first = self.pairing.rows.row(point).0.first();
-        first.map_or(1.0, |&unknown| {
-            self.rebound.factor[self.system.part_of(unknown as usize)]
-        })
-    }
-
     /// Takes as much of the rebounds of the iteration as makes no energy.
     ///
     /// # Errors
     /// A contact problem without solution.
     pub(super) fn limit_rebound(&mut self) -> Result<(), Error> {
-        if !self.rebound.any || self.maps.is_static() || self.maps.first().rate.c != 0.0 {
+        if !self.contacts.rebound.any
+            || self.attempt.maps.is_static()
+            || self.attempt.maps.first().rate.c != 0.0
+        {
             return Ok(());
         }
-        let rounding = ROUNDING.max(self.system.nonlinear.iteration.tolerance);
-        self.join_parts();
-        self.weigh_impacts();
-        let parts = 0..self.rebound.first.len();
-        let gains = |driver: &Driver, first: usize| driver.rebound.gains(first, 0.0, rounding);
+        let rounding = ROUNDING.max(self.attempt.system.nonlinear.iteration.tolerance);
+        self.contacts.join_parts(&self.attempt);
+        self.contacts.weigh_impacts(&self.attempt);
+        let parts = 0..self.contacts.rebound.first.len();
+        let gains =
+            |driver: &Driver, first: usize| driver.contacts.rebound.gains(first, 0.0, rounding);
         if !parts.clone().any(|first| gains(self, first)) {
             return Ok(());
         }
-        let Rebound { least, bounds, .. } = &mut self.rebound;
+        let Rebound { least, bounds, .. } = &mut self.contacts.rebound;
         least.fill(f64::INFINITY);
         bounds.fill([0.0, 1.0]);
         for first in parts.clone() {
             if gains(self, first) {
-                self.rebound.least[first] = 0.0;
+                self.contacts.rebound.least[first] = 0.0;
             }
         }
         self.rebound_by(|_| 0.0)?;
         // friction at the velocity of the end may give what is of the order of a step, with or without rebound
         for first in parts.clone() {
-            let rebound = &mut self.rebound;
+            let rebound = &mut self.contacts.rebound;
             rebound.least[first] = rebound.least[first].max(rebound.made[first][0]);
         }
         for _ in 0..HALVINGS {
             self.rebound_by(|[low, high]| 0.5 * (low + high))?;
             for first in parts.clone() {
-                let most = self.rebound.least[first];
-                let gains = self.rebound.gains(first, most, rounding);
-                let [low, high] = &mut self.rebound.bounds[first];
+                let most = self.contacts.rebound.least[first];
+                let gains = self.contacts.rebound.gains(first, most, rounding);
+                let [low, high] = &mut self.contacts.rebound.bounds[first];
                 *(if gains { high } else { low }) = 0.5 * (*low + *high);
             }
         }
@@ -76,7 +70,7 @@ impl Driver {
 
     /// Solves the problem of the iteration with an s of the interval where the rebound is limited, and weighs what it makes.
     fn rebound_by(&mut self, of: impl Fn([f64; 2]) -> f64) -> Result<(), Error> {
-        let rebound = &mut self.rebound;
+        let rebound = &mut self.contacts.rebound;
         for part in 0..rebound.first.len() {
             let first = rebound.first[part];
             rebound.factor[part] = match rebound.least[first].is_finite() {
@@ -86,13 +80,26 @@ impl Driver {
         }
         self.begin_forces()?;
         self.find_forces()?;
-        self.weigh_impacts();
+        self.contacts.weigh_impacts(&self.attempt);
         Ok(())
+    }
+}
+
+impl Contacts {
+    /// The part s of the coefficient of restitution that a point has.
+    pub(super) fn rebound_of(&self, attempt: &Attempt, point: usize) -> f64 {
+        if !self.rebound.any {
+            return 1.0;
+        }
+        let first = self.pairing.rows.row(point).0.first();
+        first.map_or(1.0, |&unknown| {
+            self.rebound.factor[attempt.system.part_of(unknown as usize)]
+        })
     }
 
     /// Finds which parts the candidates join.
-    fn join_parts(&mut self) {
-        let system = Arc::clone(&self.system);
+    pub(super) fn join_parts(&mut self, attempt: &Attempt) {
+        let system = Arc::clone(&attempt.system);
         for (part, first) in self.rebound.first.iter_mut().enumerate() {
             *first = part;
         }
@@ -107,30 +114,30 @@ impl Driver {
     }
 
     /// The energy that the points of rigid bodies give to them in the motion of the iteration.
-    fn weigh_impacts(&mut self) {
-        let impulse = self.maps.contact() * self.dt;
+    pub(super) fn weigh_impacts(&mut self, attempt: &Attempt) {
+        let impulse = attempt.maps.contact() * attempt.dt;
         let mut made = std::mem::take(&mut self.rebound.made);
         made.fill([0.0; 2]);
         for &point in &self.candidates {
-            let (point, number) = (point as usize, self.system.contact_of(point as usize));
+            let (point, number) = (point as usize, attempt.system.contact_of(point as usize));
             let (unknowns, _) = self.pairing.rows.row(point);
             let (true, Some(&unknown)) = (self.rebound.rigid[number], unknowns.first()) else {
                 continue;
             };
-            let first = self.rebound.first[self.system.part_of(unknown as usize)];
+            let first = self.rebound.first[attempt.system.part_of(unknown as usize)];
             let mut add = |force: f64, rates: [f64; 2]| {
                 let [before, after] = rates.map(|rate| 0.5 * impulse * force * rate);
                 made[first][0] += before + after;
                 made[first][1] += before.abs() + after.abs();
             };
-            let along = self.pairing.rows.product(point, &self.vectors.dx);
-            let end = self.now(point, false).1 + self.added(point, along)[1];
-            let force = self.next.interface.force[point];
-            add(force, [self.rate_at_start(point), end]);
-            let friction = self.next.interface.friction.get(point);
+            let along = self.pairing.rows.product(point, &attempt.vectors.dx);
+            let end = self.now(attempt, point, false).1 + attempt.added(point, along)[1];
+            let force = attempt.next.interface.force[point];
+            add(force, [self.rate_at_start(attempt, point), end]);
+            let friction = attempt.next.interface.friction.get(point);
             for (k, &t) in friction.into_iter().flatten().enumerate() {
                 if t != 0.0 {
-                    add(t, self.sliding_rates(point, k));
+                    add(t, self.sliding_rates(attempt, point, k));
                 }
             }
         }
@@ -138,15 +145,20 @@ impl Driver {
     }
 
     /// Rates along a tangent at the start of the step and at its end, m/s; twice their mean half each where the way is what counts.
-    fn sliding_rates(&self, point: usize, tangent: usize) -> [f64; 2] {
-        let (row, time) = self.sliding();
+    pub(super) fn sliding_rates(
+        &self,
+        attempt: &Attempt,
+        point: usize,
+        tangent: usize,
+    ) -> [f64; 2] {
+        let (row, time) = self.sliding(attempt);
         let rows = &self.pairing.tangents[tangent];
-        let map = self.map_of(self.system.contact_of(point));
-        let slid = self.slid(point, tangent, (row, time))
-            + row(map).x * rows.product(point, &self.vectors.dx);
+        let map = attempt.map_of(attempt.system.contact_of(point));
+        let slid = self.slid(attempt, point, tangent, (row, time))
+            + row(map).x * rows.product(point, &attempt.vectors.dx);
         match self.by_rate {
             true => {
-                let start = rows.product(point, &self.state.motion.v) + rows.rate(point);
+                let start = rows.product(point, &attempt.state.motion.v) + rows.rate(point);
                 [start, slid]
             }
             false => [slid / time; 2],

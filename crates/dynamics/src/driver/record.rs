@@ -5,6 +5,7 @@ use std::sync::Arc;
 use carom_contact::Rows;
 
 use super::Driver;
+use super::owners::{Attempt, Contacts};
 use crate::assembly_energy::{PartMotion, balance_taken};
 use crate::exchange::sum;
 use crate::moment::moment;
@@ -21,13 +22,13 @@ impl Driver {
     pub(super) fn record(&mut self) {
         self.report_contacts();
         self.record_contacts();
-        if !self.maps.is_static() {
-            let system = Arc::clone(&self.system);
-            let work = &mut self.vectors.work;
-            system.mass.multiply(&self.next.motion.v, work);
-            let records = &self.next.records.contacts;
+        if !self.attempt.maps.is_static() {
+            let system = Arc::clone(&self.attempt.system);
+            let work = &mut self.attempt.vectors.work;
+            system.mass.multiply(&self.attempt.next.motion.v, work);
+            let records = &self.attempt.next.records.contacts;
             let momenta = |part: usize| sum(&system, &system.parts[part], work);
-            self.next.exchange.close(&system, momenta, records);
+            self.attempt.next.exchange.close(&system, momenta, records);
             self.balance_assemblies();
         }
         self.look_at_the_end();
@@ -36,11 +37,11 @@ impl Driver {
     /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
     fn balance_assemblies(&mut self) {
         self.work_of_obstacles();
-        let inertia = self.inertia_of_identity();
-        let system = Arc::clone(&self.system);
+        let inertia = self.attempt.inertia_of_identity();
+        let system = Arc::clone(&self.attempt.system);
         let system = &*system;
-        let (old, new) = (&self.state.motion, &self.next.motion);
-        let (vectors, given) = (&mut self.vectors, &self.works.given);
+        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
+        let (vectors, given) = (&mut self.attempt.vectors, &self.balances.works.given);
         if inertia != 0.0 {
             system.mass.multiply(&new.a, &mut vectors.half);
         }
@@ -62,7 +63,7 @@ impl Driver {
             motion.given = given.get(number).copied().unwrap_or(0.0);
             motion
         };
-        let motions: &mut Vec<PartMotion> = &mut self.works.motions;
+        let motions: &mut Vec<PartMotion> = &mut self.balances.works.motions;
         motions.clear();
         motions.extend((0..system.parts.len()).map(part));
         let motions = std::mem::take(motions);
@@ -72,43 +73,61 @@ impl Driver {
     /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part.
     pub(super) fn add_to_assemblies(&mut self, mut motions: Vec<PartMotion>) {
         let internal = |state: &State| state.ledger.balance.internal();
-        if self.system.is_nonlinear() {
-            balance_taken(&mut motions, internal(&self.next) - internal(&self.state));
+        if self.attempt.system.is_nonlinear() {
+            balance_taken(
+                &mut motions,
+                internal(&self.attempt.next) - internal(&self.attempt.state),
+            );
         }
-        let assemblies = &mut self.next.assemblies;
-        assemblies.follow(&self.state.assemblies);
-        let records = &self.next.records.contacts[..];
-        assemblies.add(&self.system, &motions, (records, &self.works.obstacles));
-        self.works.motions = motions;
+        let assemblies = &mut self.attempt.next.assemblies;
+        assemblies.follow(&self.attempt.state.assemblies);
+        let records = &self.attempt.next.records.contacts[..];
+        assemblies.add(
+            &self.attempt.system,
+            &motions,
+            (records, &self.balances.works.obstacles),
+        );
+        self.balances.works.motions = motions;
     }
 
     /// What the points of the contacts did in the step: those that this process has.
     pub(super) fn report_contacts(&mut self) {
-        let mut all = std::mem::take(&mut self.of_contacts);
-        let mut nodal = std::mem::take(&mut self.nodal);
+        let mut all = std::mem::take(&mut self.contacts.of_contacts);
+        let mut nodal = std::mem::take(&mut self.contacts.nodal);
         all.clear();
-        for k in 0..self.system.contacts.len() {
-            let forces = &self.next.interface.force[self.system.points_of(k)];
-            let mixed = self.weak.mixed(k, forces);
+        for k in 0..self.attempt.system.contacts.len() {
+            let forces = &self.attempt.next.interface.force[self.attempt.system.points_of(k)];
+            let mixed = self.contacts.weak.mixed(k, forces);
             let mut of = self.of_contact(k, &mut nodal);
             of.report.mixed = mixed;
             all.push(of);
         }
-        self.passage.forget();
-        (self.of_contacts, self.nodal) = (all, nodal);
+        self.contacts.passage.forget();
+        (self.contacts.of_contacts, self.contacts.nodal) = (all, nodal);
     }
 
     fn of_contact(&self, k: usize, nodal: &mut Vec<f64>) -> OfContact {
-        let (system, rows, projected) = (&*self.system, &self.pairing.rows, &self.projected);
+        let (system, rows, projected) = (
+            &*self.attempt.system,
+            &self.contacts.pairing.rows,
+            &self.stages.projected,
+        );
         // without inertia forces give no impulse, and closing is no impact
-        let dt = if self.maps.is_static() { 0.0 } else { self.dt };
-        let impulse = self.contact_impulse(k);
-        let (old, new) = (&self.state.interface, &self.next.interface);
-        let points = || self.active.within(system.points_of(k));
-        let mut report = contact_report(points(), rows, [old, new], self.dt);
-        self.report_friction(k, &mut report);
+        let dt = if self.attempt.maps.is_static() {
+            0.0
+        } else {
+            self.attempt.dt
+        };
+        let impulse = self.attempt.contact_impulse(k);
+        let (old, new) = (&self.attempt.state.interface, &self.attempt.next.interface);
+        let points = || self.contacts.active.within(system.points_of(k));
+        let mut report = contact_report(points(), rows, [old, new], self.attempt.dt);
+        self.contacts.report_friction(&self.attempt, k, &mut report);
         report.moment = self.moment_of(k, nodal);
-        report.friction_loss = -self.friction_work_of(k, [impulse.old, impulse.new]);
+        report.friction_loss =
+            -self
+                .contacts
+                .friction_work_of(&self.attempt, k, [impulse.old, impulse.new]);
         let carried_on = |point: usize| {
             let changed = old.carried[point] - old.force[point];
             projected.impulse(point) + dt * impulse.old * changed
@@ -124,14 +143,15 @@ impl Driver {
                 false => energy(new.crush[point]) - energy(old.crush[point]),
             }
         };
-        let passed = self.passed(k);
+        let passed = self.contacts.passed(&self.attempt, k);
         OfContact {
             near: passed > 0 || points().next().is_some(),
             motion: f64::INFINITY,
-            work: self.contact_work(k) + points().map(|p| projected.work(p)).sum::<f64>(),
+            work: self.contacts.contact_work(&self.attempt, k)
+                + points().map(|p| projected.work(p)).sum::<f64>(),
             crushed: points().map(crush).sum(),
-            pushed: self.pushed(k),
-            passing: self.passing(k),
+            pushed: self.contacts.pushed(&self.attempt, k),
+            passing: self.contacts.passing(&self.attempt, k),
             passed,
             jump: [
                 total(points(), rows, |point| projected.impulse(point)),
@@ -143,31 +163,38 @@ impl Driver {
 
     /// Records of the contacts, from what was reported of them.
     pub(super) fn record_contacts(&mut self) {
-        let system = Arc::clone(&self.system);
-        self.next.records.follow(&self.state.records);
-        self.next.time = self.state.time + self.dt;
-        let dt = if self.maps.is_static() { 0.0 } else { self.dt };
-        let span = [self.state.time, self.next.time];
-        for (k, of) in self.of_contacts.iter().enumerate() {
-            let impulse = self.contact_impulse(k);
+        let system = Arc::clone(&self.attempt.system);
+        self.attempt
+            .next
+            .records
+            .follow(&self.attempt.state.records);
+        self.attempt.next.time = self.attempt.state.time + self.attempt.dt;
+        let dt = if self.attempt.maps.is_static() {
+            0.0
+        } else {
+            self.attempt.dt
+        };
+        let span = [self.attempt.state.time, self.attempt.next.time];
+        for (k, of) in self.contacts.of_contacts.iter().enumerate() {
+            let impulse = self.attempt.contact_impulse(k);
             let State {
                 motion,
                 records,
                 interface,
                 ..
-            } = &mut self.next;
+            } = &mut self.attempt.next;
             let step = Step {
                 span,
                 dt,
                 impulse,
-                forces: [&self.state.interface.force, &interface.force],
+                forces: [&self.attempt.state.interface.force, &interface.force],
                 report: &of.report,
                 work: of.work,
                 crushed: of.crushed,
                 jump: of.jump,
             };
-            let velocities = [&self.state.motion.v[..], &motion.v];
-            let points = self.active.within(system.points_of(k));
+            let velocities = [&self.attempt.state.motion.v[..], &motion.v];
+            let points = self.contacts.active.within(system.points_of(k));
             records.add((&system, k), (&step, points), velocities);
             records.contacts[k].passing = of.passing;
             records.contacts[k].passed += of.passed;
@@ -179,40 +206,20 @@ impl Driver {
     /// Looks at the end of the step, whose energies are known; ranks look once the step is taken, together.
     pub(super) fn look_at_the_end(&mut self) {
         if !self.is_shared() {
-            let (system, step) = (Arc::clone(&self.system), self.state.step + 1);
-            self.watch.look_alone(&system, step, &mut self.next);
+            let (system, step) = (
+                Arc::clone(&self.attempt.system),
+                self.attempt.state.step + 1,
+            );
+            self.watch.look_alone(&system, step, &mut self.attempt.next);
         }
-    }
-
-    /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
-    fn passing(&self, number: usize) -> Largest {
-        let system = &*self.system;
-        let mut passing = self.state.records.contacts[number].passing;
-        let contact = &system.contacts[number];
-        if !contact.may_be_passed() {
-            return passing;
-        }
-        let (rows, interface) = (&self.pairing.rows, &self.next.interface);
-        let [old, new] = [&self.state.motion.u, &self.next.motion.u];
-        for point in self.active.within(system.points_of(number)) {
-            let end = interface.gap[point];
-            let start = end - (rows.product(point, new) - rows.product(point, old));
-            let depth = -end.min(start);
-            if depth > passing.value {
-                let point = &contact.points[point - system.contacts[number].range.start];
-                let node = system.mesh_node[point.node() as usize];
-                passing.take(depth, node, self.state.time + self.dt);
-            }
-        }
-        passing
     }
 
     /// Moment of a contact in the step, about the point that it names, N m; zero where it names none.
     fn moment_of(&self, contact: usize, nodal: &mut Vec<f64>) -> [f64; 3] {
-        let (old, new) = (&self.state.motion, &self.next.motion);
+        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
         let at = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
-        let forces = self.forces_of(contact, &self.next.interface);
-        moment((&self.system, contact), forces, at, nodal)
+        let forces = self.forces_of(contact, &self.attempt.next.interface);
+        moment((&self.attempt.system, contact), forces, at, nodal)
     }
 
     /// Rows, points and forces of a contact along them, normals and tangents, N.
@@ -221,10 +228,13 @@ impl Driver {
         contact: usize,
         interface: &'a InterfaceState,
     ) -> impl Iterator<Item = (&'a Rows, usize, f64)> {
-        let points = self.active.within(self.system.points_of(contact));
-        let tangents = &self.pairing.tangents[..self.system.tangents()];
+        let points = self
+            .contacts
+            .active
+            .within(self.attempt.system.points_of(contact));
+        let tangents = &self.contacts.pairing.tangents[..self.attempt.system.tangents()];
         points.flat_map(move |point| {
-            let normal = (&self.pairing.rows, point, interface.force[point]);
+            let normal = (&self.contacts.pairing.rows, point, interface.force[point]);
             let friction = interface.friction.get(point);
             let friction = tangents.iter().zip(friction.into_iter().flatten());
             let friction = friction.map(move |(rows, t)| (rows, point, *t));
@@ -232,11 +242,68 @@ impl Driver {
         })
     }
 
+    /// Completes the report of the state just accepted. `dt`: the whole step, s.
+    pub(super) fn tell(&mut self, dt: f64) {
+        let state = &self.attempt.state;
+        self.report.step = state.step;
+        self.report.time = state.time;
+        self.report.dt = dt;
+        self.report.balance = state.ledger.balance;
+        if state.step > 0 {
+            self.report.supports.clone_from(&self.balances.reactions);
+        }
+        self.report.passes = match self.attempt.system.is_nonlinear() {
+            true => self.parts.residuals.len(),
+            false if self.contacts.candidates.is_empty() && !self.is_shared() => 0,
+            false => self.contacts.interface.passes,
+        };
+        if state.step == 0 {
+            for (k, report) in self.report.contacts.iter_mut().enumerate() {
+                let (rows, interface) = (&self.contacts.pairing.rows, &state.interface);
+                let points = self.attempt.system.points_of(k);
+                *report = contact_report(points.clone(), rows, [interface; 2], 0.0);
+                let forces = points.map(|point| (rows, point, interface.force[point]));
+                let at = (&state.motion.frames[..], &[&state.motion.u[..]][..]);
+                report.moment = moment(
+                    (&self.attempt.system, k),
+                    forces,
+                    at,
+                    &mut self.contacts.nodal,
+                );
+            }
+        }
+    }
+}
+
+impl Contacts {
+    /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
+    pub(super) fn passing(&self, attempt: &Attempt, number: usize) -> Largest {
+        let system = &*attempt.system;
+        let mut passing = attempt.state.records.contacts[number].passing;
+        let contact = &system.contacts[number];
+        if !contact.may_be_passed() {
+            return passing;
+        }
+        let (rows, interface) = (&self.pairing.rows, &attempt.next.interface);
+        let [old, new] = [&attempt.state.motion.u, &attempt.next.motion.u];
+        for point in self.active.within(system.points_of(number)) {
+            let end = interface.gap[point];
+            let start = end - (rows.product(point, new) - rows.product(point, old));
+            let depth = -end.min(start);
+            if depth > passing.value {
+                let point = &contact.points[point - system.contacts[number].range.start];
+                let node = system.mesh_node[point.node() as usize];
+                passing.take(depth, node, attempt.state.time + attempt.dt);
+            }
+        }
+        passing
+    }
+
     /// Work of the normal forces of one contact on the motion of the step, J.
-    fn contact_work(&self, contact: usize) -> f64 {
+    pub(super) fn contact_work(&self, attempt: &Attempt, contact: usize) -> f64 {
         let rows = &self.pairing.rows;
-        let weights = self.weights_of_work(contact);
-        let (old, new) = (&self.state, &self.next);
+        let weights = attempt.weights_of_work(contact);
+        let (old, new) = (&attempt.state, &attempt.next);
         let of_point = |point: usize| {
             let force = weights.old * old.interface.carried[point]
                 + weights.new * new.interface.force[point];
@@ -250,13 +317,15 @@ impl Driver {
                     false => u - weights.lag * rows.product(point, &state.motion.v),
                 }
             };
-            force * (place(new) - place(old) + self.dt * rows.rate(point))
+            force * (place(new) - place(old) + attempt.dt * rows.rate(point))
         };
-        let points = self.system.points_of(contact);
+        let points = attempt.system.points_of(contact);
         self.active.within(points).map(of_point).sum()
     }
+}
 
-    fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
+impl Attempt {
+    pub(super) fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
         match self.system.is_nonlinear() {
             false => self.work_weights(),
             true => {
@@ -272,40 +341,13 @@ impl Driver {
 
     /// How the forces of a contact change the momentum; of a static step, which changes none, how they count in its works, as all forces
     /// do there.
-    fn contact_impulse(&self, contact: usize) -> Impulse {
+    pub(super) fn contact_impulse(&self, contact: usize) -> Impulse {
         match self.maps.is_static() {
             true => {
                 let [old, new] = self.weights_of(self.system.zone_of(contact));
                 Impulse::weights(old, new)
             }
             false => self.map_of(contact).contact_impulse,
-        }
-    }
-
-    /// Completes the report of the state just accepted. `dt`: the whole step, s.
-    pub(super) fn tell(&mut self, dt: f64) {
-        let state = &self.state;
-        self.report.step = state.step;
-        self.report.time = state.time;
-        self.report.dt = dt;
-        self.report.balance = state.ledger.balance;
-        if state.step > 0 {
-            self.report.supports.clone_from(&self.reactions);
-        }
-        self.report.passes = match self.system.is_nonlinear() {
-            true => self.residuals.len(),
-            false if self.candidates.is_empty() && !self.is_shared() => 0,
-            false => self.interface.passes,
-        };
-        if state.step == 0 {
-            for (k, report) in self.report.contacts.iter_mut().enumerate() {
-                let (rows, interface) = (&self.pairing.rows, &state.interface);
-                let points = self.system.points_of(k);
-                *report = contact_report(points.clone(), rows, [interface; 2], 0.0);
-                let forces = points.map(|point| (rows, point, interface.force[point]));
-                let at = (&state.motion.frames[..], &[&state.motion.u[..]][..]);
-                report.moment = moment((&self.system, k), forces, at, &mut self.nodal);
-            }
         }
     }
 }

@@ -20,6 +20,7 @@ use carom_contact::Sliding;
 
 use super::deletion::as_narrowed;
 use super::mixing::LARGEST;
+use super::owners::{Attempt, Contacts, Parts};
 use super::refined::Refined;
 use super::residual::Standing;
 use super::{Driver, Vectors};
@@ -42,17 +43,13 @@ impl Driver {
     /// Whether the problem of an iteration is solved with bodies alone linearised.
     pub(super) fn refines(&self) -> bool {
         let turns = |&point: &u32| {
-            let contact = self.system.contact_of(point as usize);
-            self.turning(contact) != 0.0 && self.system.contacts[contact].sliding == Sliding::Finite
+            let contact = self.attempt.system.contact_of(point as usize);
+            self.contacts.turning(contact) != 0.0
+                && self.attempt.system.contacts[contact].sliding == Sliding::Finite
         };
-        self.effective.has_whole_tangent()
-            && self.may_refine()
-            && (self.between() || self.candidates.iter().any(turns))
-    }
-
-    /// Whether it may be, by what the step has beside bodies and contacts.
-    pub(super) fn may_refine(&self) -> bool {
-        !self.floats() && !self.has_links() && self.vectors.push.is_empty()
+        self.parts.effective.has_whole_tangent()
+            && self.parts.may_refine(&self.attempt)
+            && (self.attempt.between() || self.contacts.candidates.iter().any(turns))
     }
 
     /// Makes the motion `dx` of the iteration and the contact forces after it those of the problem with bodies alone linearised.
@@ -61,20 +58,20 @@ impl Driver {
     /// A contact problem without solution.
     pub(super) fn refine(&mut self) -> Result<(), Error> {
         // the motion has the jump of the supports
-        let jumps = std::mem::take(&mut self.vectors.jumps);
-        let mut refined = std::mem::take(&mut self.refined);
-        refined.x.clone_from(&self.vectors.x);
-        refined.residual.clone_from(&self.vectors.residual);
-        refined.motion.clone_from(&self.vectors.dx);
+        let jumps = std::mem::take(&mut self.attempt.vectors.jumps);
+        let mut refined = std::mem::take(&mut self.parts.refined);
+        refined.x.clone_from(&self.attempt.vectors.x);
+        refined.residual.clone_from(&self.attempt.vectors.residual);
+        refined.motion.clone_from(&self.attempt.vectors.dx);
         refined.mixing.clear();
-        self.refined.holds_columns = true;
+        self.parts.refined.holds_columns = true;
         let outcome = self.passes(&mut refined);
-        let vectors = &mut self.vectors;
+        let vectors = &mut self.attempt.vectors;
         vectors.jumps = jumps;
         vectors.x.copy_from_slice(&refined.x);
         vectors.residual.copy_from_slice(&refined.residual);
         vectors.dx.copy_from_slice(&refined.motion);
-        self.refined = refined;
+        self.parts.refined = refined;
         outcome
     }
 
@@ -83,73 +80,131 @@ impl Driver {
         for _ in 0..PASSES {
             let standing = self.stand_at(refined);
             let now = standing.imbalance;
-            let enough = *enough.get_or_insert_with(|| self.enough(now));
+            let enough = *enough.get_or_insert_with(|| self.parts.enough(&self.attempt, now));
             let obeys = standing.defect <= WITHIN;
             if obeys && (now <= enough.max(standing.rounding) || now > STALLED * last) {
                 break;
             }
             if now > last {
-                self.undo_pass(refined);
+                self.contacts.undo_pass(&mut self.attempt, refined);
                 break;
             }
             last = now;
             refined.before.clone_from(&refined.motion);
-            refined.interface.clone_from(&self.next.interface);
-            refined.slips.clone_from(&self.slips);
+            refined.interface.clone_from(&self.attempt.next.interface);
+            refined.slips.clone_from(&self.contacts.slips);
             self.load_pass();
             self.solve_with_columns()?;
-            let way = (&self.vectors.x[..], &mut self.vectors.dx[..]);
-            if refined.mixing.mix(way, &mut self.next.interface, LARGEST) {
-                self.take_weak();
+            let way = (
+                &self.attempt.vectors.x[..],
+                &mut self.attempt.vectors.dx[..],
+            );
+            if refined
+                .mixing
+                .mix(way, &mut self.attempt.next.interface, LARGEST)
+            {
+                self.contacts.take_weak(&self.attempt);
             }
-            for (motion, dx) in refined.motion.iter_mut().zip(&self.vectors.dx) {
+            for (motion, dx) in refined.motion.iter_mut().zip(&self.attempt.vectors.dx) {
                 *motion += dx;
             }
         }
         Ok(())
     }
 
-    /// Undoes the last pass.
-    fn undo_pass(&mut self, refined: &mut Refined) {
-        refined.motion.clone_from(&refined.before);
-        self.next.interface.clone_from(&refined.interface);
-        self.slips.clone_from(&refined.slips);
-        self.take_weak();
-    }
-
-    /// Imbalance at which passes may end, the first of which leaves this one: a tenth of it, and of what the error of the bodies will be,
-    /// c r² with the c of the iteration before.
-    fn enough(&self, first: f64) -> f64 {
-        let bodies = match self.residuals[..] {
-            [.., before, now] if now < before => now * (now / before).powi(2),
-            _ => first,
-        };
-        let tolerance = self.system.nonlinear.iteration.tolerance;
-        f64::max(LEFT * first.min(bodies), WITHIN * tolerance)
-    }
-
     /// Goes to x + d, with the residual of linear bodies there.
     fn stand_at(&mut self, refined: &mut Refined) -> Standing {
-        let system = Arc::clone(&self.system);
-        self.effective
+        let system = Arc::clone(&self.attempt.system);
+        self.parts
+            .effective
             .whole_product(&refined.motion, &mut refined.product);
-        let vectors = &mut self.vectors;
+        let vectors = &mut self.attempt.vectors;
         for (i, x) in vectors.x.iter_mut().enumerate() {
             *x = refined.x[i] + refined.motion[i];
             if !system.fixed[i] {
                 vectors.residual[i] = refined.residual[i] - refined.product[i];
             }
         }
-        self.pair_candidates();
+        self.contacts.pair_candidates(&mut self.attempt);
         self.standing()
     }
 
+    /// Forces of a pass without those of its contacts along N(x), into `work`.
+    fn load_pass(&mut self) {
+        let factor = self.attempt.maps.contact();
+        let vectors = &mut self.attempt.vectors;
+        for (work, (r, contact)) in vectors
+            .work
+            .iter_mut()
+            .zip(vectors.residual.iter().zip(&vectors.contact))
+        {
+            *work = r + factor * contact;
+        }
+        self.take_column_forces(-factor);
+        let System { fixed, .. } = &*self.attempt.system;
+        for (work, fixed) in self.attempt.vectors.work.iter_mut().zip(fixed) {
+            if *fixed {
+                *work = 0.0;
+            }
+        }
+    }
+
+    /// Adds the forces of the candidates along the rows of their columns, times `factor`, to `work`.
+    fn take_column_forces(&mut self, factor: f64) {
+        let width = 1 + match self.contacts.rubs(&self.attempt) {
+            true => self.attempt.system.tangents() as u32,
+            false => 0,
+        };
+        let Some((_, compliance)) = self.parts.effective.both() else {
+            return;
+        };
+        let interface = &self.attempt.next.interface;
+        for &point in &self.contacts.candidates {
+            let at = point as usize;
+            let t = interface.friction.get(at).copied().unwrap_or_default();
+            let forces = [interface.force[at], t[0], t[1]];
+            for (row, force) in (point * width..(point + 1) * width).zip(forces) {
+                if force != 0.0 {
+                    compliance.add_force(row, factor * force, &mut self.attempt.vectors.work);
+                }
+            }
+        }
+    }
+}
+
+impl Parts {
+    /// Whether it may be, by what the step has beside bodies and contacts.
+    pub(super) fn may_refine(&self, attempt: &Attempt) -> bool {
+        !self.floats(attempt) && !attempt.has_links() && attempt.vectors.push.is_empty()
+    }
+
+    /// Imbalance at which passes may end, the first of which leaves this one: a tenth of it, and of what the error of the bodies will be,
+    /// c r² with the c of the iteration before.
+    pub(super) fn enough(&self, attempt: &Attempt, first: f64) -> f64 {
+        let bodies = match self.residuals[..] {
+            [.., before, now] if now < before => now * (now / before).powi(2),
+            _ => first,
+        };
+        let tolerance = attempt.system.nonlinear.iteration.tolerance;
+        f64::max(LEFT * first.min(bodies), WITHIN * tolerance)
+    }
+}
+
+impl Contacts {
+    /// Undoes the last pass.
+    pub(super) fn undo_pass(&mut self, attempt: &mut Attempt, refined: &mut Refined) {
+        refined.motion.clone_from(&refined.before);
+        attempt.next.interface.clone_from(&refined.interface);
+        self.slips.clone_from(&refined.slips);
+        self.take_weak(attempt);
+    }
+
     /// Pairs the candidates at x; other points stay as they are.
-    fn pair_candidates(&mut self) {
-        let system = Arc::clone(&self.system);
-        let plain = self.vectors.ahead.is_empty() && self.vectors.end.is_empty();
+    pub(super) fn pair_candidates(&mut self, attempt: &mut Attempt) {
+        let system = Arc::clone(&attempt.system);
+        let plain = attempt.vectors.ahead.is_empty() && attempt.vectors.end.is_empty();
         if !plain || self.rows_stand || !self.far.is_empty() {
-            return self.pair(false);
+            return self.pair(attempt, false);
         }
         let (mut placed, mut own) = (None, Vec::new());
         for (number, contact) in system.contacts.iter().enumerate() {
@@ -167,67 +222,30 @@ impl Driver {
             }
             let paired = self.paired_at(number);
             if placed.replace(paired) != Some(paired) {
-                let Vectors { x, push, place, .. } = &mut self.vectors;
-                self.maps
-                    .whole(|map| paired.row(map), &self.state.motion, [x, push], place);
+                let Vectors { x, push, place, .. } = &mut attempt.vectors;
+                attempt.maps.whole(
+                    |map| paired.row(map),
+                    &attempt.state.motion,
+                    [x, push],
+                    place,
+                );
             }
             if contact.sliding == Sliding::Small {
                 let initial = &self.initial[number].rows;
                 self.pairing
                     .rows
-                    .move_again(first, initial, &self.vectors.place);
+                    .move_again(first, initial, &attempt.vectors.place);
                 continue;
             }
-            self.pairing.span = self.span(number);
-            let time = self.state.time + self.paired_after(number);
-            let mut places = system.places(time, &self.vectors.place, &self.state.motion.frames);
-            places.frames.middle = self.between();
+            self.pairing.span = self.span(attempt, number);
+            let time = attempt.state.time + self.paired_after(attempt, number);
+            let mut places =
+                system.places(time, &attempt.vectors.place, &attempt.state.motion.frames);
+            places.frames.middle = attempt.between();
             let contact = as_narrowed(&self.narrowed, &system, number);
             let search = &mut self.search[number];
             contact.pair_again(&places, search, (&own, first), &mut self.pairing);
         }
-        self.stack();
-    }
-
-    /// Forces of a pass without those of its contacts along N(x), into `work`.
-    fn load_pass(&mut self) {
-        let factor = self.maps.contact();
-        let vectors = &mut self.vectors;
-        for (work, (r, contact)) in vectors
-            .work
-            .iter_mut()
-            .zip(vectors.residual.iter().zip(&vectors.contact))
-        {
-            *work = r + factor * contact;
-        }
-        self.take_column_forces(-factor);
-        let System { fixed, .. } = &*self.system;
-        for (work, fixed) in self.vectors.work.iter_mut().zip(fixed) {
-            if *fixed {
-                *work = 0.0;
-            }
-        }
-    }
-
-    /// Adds the forces of the candidates along the rows of their columns, times `factor`, to `work`.
-    fn take_column_forces(&mut self, factor: f64) {
-        let width = 1 + match self.rubs() {
-            true => self.system.tangents() as u32,
-            false => 0,
-        };
-        let Some((_, compliance)) = self.effective.both() else {
-            return;
-        };
-        let interface = &self.next.interface;
-        for &point in &self.candidates {
-            let at = point as usize;
-            let t = interface.friction.get(at).copied().unwrap_or_default();
-            let forces = [interface.force[at], t[0], t[1]];
-            for (row, force) in (point * width..(point + 1) * width).zip(forces) {
-                if force != 0.0 {
-                    compliance.add_force(row, factor * force, &mut self.vectors.work);
-                }
-            }
-        }
+        self.stack(attempt);
     }
 }

@@ -6,6 +6,7 @@ use carom_bodies::Body;
 use carom_mesh::ElementId;
 
 use super::loads::damping_rate;
+use super::owners::{Attempt, Links, Parts};
 use super::scratch::Squares;
 use super::{Driver, Which};
 use crate::error::{Error, MeshNode};
@@ -33,31 +34,35 @@ pub(super) struct Standing {
 impl Driver {
     /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
     pub(super) fn evaluate(&mut self, first: bool) -> Result<(), Error> {
-        match first && self.is_affine() && self.system.nonlinear.follows.is_empty() {
+        match first && self.is_affine() && self.attempt.system.nonlinear.follows.is_empty() {
             // the first guess has no inertia
-            true => self.vectors.inertia.fill(0.0),
-            false => self.evaluate_inertia(),
+            true => self.attempt.vectors.inertia.fill(0.0),
+            false => self.attempt.evaluate_inertia(),
         }
-        if first || !self.maps.is_explicit() {
-            self.evaluate_rate();
-            self.evaluate_damping();
-            let vectors = &mut self.vectors;
-            let (xc, motion) = ([&vectors.x[..], &vectors.push], &self.state.motion);
+        if first || !self.attempt.maps.is_explicit() {
+            self.attempt.evaluate_rate();
+            self.parts.evaluate_damping(&mut self.attempt);
+            let vectors = &mut self.attempt.vectors;
+            let (xc, motion) = ([&vectors.x[..], &vectors.push], &self.attempt.state.motion);
             let place = &mut vectors.place;
-            self.maps.whole(|map| map.force, motion, xc, place);
-            self.turn_rows();
-            let (between, dt) = (self.between(), self.dt);
-            self.stored = self.internal((Which::Place, between), |map| match between {
-                true => dt,
-                false => map.instant(dt),
-            })?;
-            self.evaluate_loads_of_step();
+            self.attempt.maps.whole(|map| map.force, motion, xc, place);
+            self.links.turn_rows(&self.attempt);
+            let (between, dt) = (self.attempt.between(), self.attempt.dt);
+            self.parts.stored = self.parts.internal(
+                &mut self.attempt,
+                (Which::Place, between),
+                |map| match between {
+                    true => dt,
+                    false => map.instant(dt),
+                },
+            )?;
+            self.attempt.evaluate_loads_of_step();
         }
-        let vectors = &mut self.vectors;
+        let vectors = &mut self.attempt.vectors;
         let residual = &mut vectors.residual[..];
         let n = residual.len();
         let (fixed, load, inertia) = (
-            &self.system.fixed[..n],
+            &self.attempt.system.fixed[..n],
             &vectors.load[..n],
             &vectors.inertia[..n],
         );
@@ -66,14 +71,143 @@ impl Driver {
             let left = load[i] - inertia[i] - internal[i] - damping[i];
             residual[i] = if fixed[i] { 0.0 } else { left };
         }
-        if !self.link_force.is_empty() {
-            let vectors = &mut self.vectors;
+        if !self.links.force.is_empty() {
+            let vectors = &mut self.attempt.vectors;
             vectors.unlinked.clone_from(&vectors.residual);
-            self.add_link_force();
+            self.links.add_link_force(&mut self.attempt);
         }
         Ok(())
     }
 
+    /// How far forces and contacts are from what they must be. The forces of an assembly, whose bodies may act on each other, are compared with
+    /// the largest of those that balance in it, and with its momentum per step: bodies that have nothing to do with it do not make its
+    /// equations less accurate. The excess is by connected part, and without momentum, so that a light body is as accurate where a heavy
+    /// one strikes it.
+    pub(super) fn standing(&mut self) -> Standing {
+        self.spread();
+        let mut squares = std::mem::take(&mut self.parts.squares);
+        self.square_forces(&mut squares);
+        let tolerance = self.attempt.system.nonlinear.iteration.tolerance;
+        let mut standing = Standing {
+            is_rounding: true,
+            ..Standing::default()
+        };
+        let (mut left_over, mut force) = (0.0, 0.0);
+        for assembly in &self.attempt.system.assemblies.all {
+            let parts = || assembly.parts.iter().map(|&part| &squares[part]);
+            standing.excess = excess(parts, tolerance).max(standing.excess);
+            let own = parts().fold(Squares::default(), Squares::with);
+            let scale = own.scale();
+            let [imbalance, rounding] =
+                [own.imbalance, own.rounding].map(|square| square.sqrt() / scale);
+            standing.is_rounding &= imbalance <= tolerance.max(rounding);
+            left_over += (scale * tolerance.max(rounding)).powi(2);
+            force += own.imbalance;
+            standing.scale = standing.scale.max(scale);
+            // what is no number is the worst
+            if imbalance.is_nan() || imbalance >= standing.imbalance {
+                (standing.imbalance, standing.rounding) = (imbalance, rounding);
+            }
+        }
+        self.parts.squares = squares;
+        self.parts.left_over = left_over.sqrt();
+        standing.force = force.sqrt();
+        let of_points = self.worst_point().map_or(0.0, |(_, defect)| defect);
+        standing.defect = of_points.max(self.links.worst_row(&self.attempt));
+        standing
+    }
+
+    /// Norm of the largest of the forces that balance in each assembly, N.
+    pub(super) fn scale_of_forces(&mut self) -> f64 {
+        let mut squares = std::mem::take(&mut self.parts.squares);
+        self.square_forces(&mut squares);
+        let of = |assembly: &Assembly| {
+            let parts = assembly.parts.iter().map(|&part| &squares[part]);
+            parts.fold(Squares::default(), Squares::with).scale()
+        };
+        let assemblies = self.attempt.system.assemblies.all.iter();
+        let scale = assemblies.map(|assembly| of(assembly).powi(2)).sum::<f64>();
+        self.parts.squares = squares;
+        scale.sqrt()
+    }
+
+    /// Squares of the forces of each part.
+    fn square_forces(&mut self, squares: &mut Vec<Squares>) {
+        if !std::mem::replace(&mut self.parts.pace.is_sized, true) {
+            self.parts.size_of_motion(&self.attempt, squares);
+        }
+        let factor = self.attempt.maps.contact();
+        let (system, vectors) = (&*self.attempt.system, &self.attempt.vectors);
+        for own in squares.iter_mut() {
+            (own.imbalance, own.forces) = (0.0, [0.0; 5]);
+        }
+        for (part, unknowns) in system.parts.iter().enumerate() {
+            let own = &mut squares[part];
+            for i in unknowns.clone() {
+                let contact = factor * vectors.contact[i];
+                if !system.fixed[i] {
+                    own.imbalance += (vectors.residual[i] + contact).powi(2);
+                }
+                let forces = [
+                    contact,
+                    vectors.load[i],
+                    vectors.internal[i],
+                    vectors.inertia[i],
+                ];
+                for (sum, force) in own.forces.iter_mut().zip(forces) {
+                    *sum += force * force;
+                }
+            }
+            if let Some(link) = self.links.force.get(unknowns.clone()) {
+                own.forces[4] += norm_squared(link);
+            }
+        }
+    }
+
+    /// The same of forces alone, without gaps: those of bodies at small strain are of displacements, and places do not count.
+    pub fn rounding_of_forces(&self) -> f64 {
+        let finite = self
+            .attempt
+            .system
+            .bodies
+            .iter()
+            .any(Body::has_finite_motion);
+        self.parts
+            .rounding_with(&self.attempt, if finite { 1.0 } else { 0.0 })
+    }
+
+    /// Norm of the forces that the iterations of the last step may have left unbalanced, N; zero of linear steps.
+    pub fn left_over(&self) -> f64 {
+        self.parts.left_over
+    }
+
+    pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
+        let (node, body, cell) = self.attempt.place_of(self.attempt.worst_unknown());
+        let contact = match self.worst_point() {
+            Some((point, defect)) if defect > 1.0 => {
+                format!("; its law is missed most by {}", self.attempt.name(point))
+            }
+            _ => String::new(),
+        };
+        let last = self.parts.residuals.len().saturating_sub(8);
+        let history = self.parts.residuals[last..]
+            .iter()
+            .map(|r| format!("{r:.1e}"));
+        Error::Equilibrium {
+            step: self.attempt.state.step + 1,
+            time: self.attempt.state.time,
+            dt: self.attempt.dt,
+            passes,
+            node,
+            body,
+            cell,
+            contact: contact.into(),
+            history: history.collect::<Vec<_>>().join(", ").into(),
+        }
+    }
+}
+
+impl Attempt {
     /// Velocity at the instant of the internal forces, where forces depend on it.
     pub(super) fn evaluate_rate(&mut self) {
         let system = &*self.system;
@@ -96,127 +230,8 @@ impl Driver {
         self.system.mass.multiply(place, &mut vectors.inertia);
     }
 
-    /// The residual with the forces of links as they stand.
-    pub(super) fn add_link_force(&mut self) {
-        let vectors = &mut self.vectors;
-        let forces = self.link_force.iter().zip(&vectors.unlinked);
-        for (i, (link, unlinked)) in forces.enumerate() {
-            vectors.residual[i] = match self.system.fixed[i] {
-                true => 0.0,
-                false => unlinked + link,
-            };
-        }
-    }
-
-    /// How far forces and contacts are from what they must be. The forces of an assembly, whose bodies may act on each other, are compared with
-    /// the largest of those that balance in it, and with its momentum per step: bodies that have nothing to do with it do not make its
-    /// equations less accurate. The excess is by connected part, and without momentum, so that a light body is as accurate where a heavy
-    /// one strikes it.
-    pub(super) fn standing(&mut self) -> Standing {
-        self.spread();
-        let mut squares = std::mem::take(&mut self.squares);
-        self.square_forces(&mut squares);
-        let tolerance = self.system.nonlinear.iteration.tolerance;
-        let mut standing = Standing {
-            is_rounding: true,
-            ..Standing::default()
-        };
-        let (mut left_over, mut force) = (0.0, 0.0);
-        for assembly in &self.system.assemblies.all {
-            let parts = || assembly.parts.iter().map(|&part| &squares[part]);
-            standing.excess = excess(parts, tolerance).max(standing.excess);
-            let own = parts().fold(Squares::default(), Squares::with);
-            let scale = own.scale();
-            let [imbalance, rounding] =
-                [own.imbalance, own.rounding].map(|square| square.sqrt() / scale);
-            standing.is_rounding &= imbalance <= tolerance.max(rounding);
-            left_over += (scale * tolerance.max(rounding)).powi(2);
-            force += own.imbalance;
-            standing.scale = standing.scale.max(scale);
-            // what is no number is the worst
-            if imbalance.is_nan() || imbalance >= standing.imbalance {
-                (standing.imbalance, standing.rounding) = (imbalance, rounding);
-            }
-        }
-        self.squares = squares;
-        self.left_over = left_over.sqrt();
-        standing.force = force.sqrt();
-        let of_points = self.worst_point().map_or(0.0, |(_, defect)| defect);
-        standing.defect = of_points.max(self.worst_row());
-        standing
-    }
-
-    /// Norm of the largest of the forces that balance in each assembly, N.
-    pub(super) fn scale_of_forces(&mut self) -> f64 {
-        let mut squares = std::mem::take(&mut self.squares);
-        self.square_forces(&mut squares);
-        let of = |assembly: &Assembly| {
-            let parts = assembly.parts.iter().map(|&part| &squares[part]);
-            parts.fold(Squares::default(), Squares::with).scale()
-        };
-        let assemblies = self.system.assemblies.all.iter();
-        let scale = assemblies.map(|assembly| of(assembly).powi(2)).sum::<f64>();
-        self.squares = squares;
-        scale.sqrt()
-    }
-
-    /// Squares of the forces of each part.
-    fn square_forces(&mut self, squares: &mut Vec<Squares>) {
-        if !std::mem::replace(&mut self.pace.is_sized, true) {
-            self.size_of_motion(squares);
-        }
-        let factor = self.maps.contact();
-        let (system, vectors) = (&*self.system, &self.vectors);
-        for own in squares.iter_mut() {
-            (own.imbalance, own.forces) = (0.0, [0.0; 5]);
-        }
-        for (part, unknowns) in system.parts.iter().enumerate() {
-            let own = &mut squares[part];
-            for i in unknowns.clone() {
-                let contact = factor * vectors.contact[i];
-                if !system.fixed[i] {
-                    own.imbalance += (vectors.residual[i] + contact).powi(2);
-                }
-                let forces = [
-                    contact,
-                    vectors.load[i],
-                    vectors.internal[i],
-                    vectors.inertia[i],
-                ];
-                for (sum, force) in own.forces.iter_mut().zip(forces) {
-                    *sum += force * force;
-                }
-            }
-            if let Some(link) = self.link_force.get(unknowns.clone()) {
-                own.forces[4] += norm_squared(link);
-            }
-        }
-    }
-
-    /// Squares of what the motion at the start of the step says: of the momentum per step, and of what rounding leaves of forces.
-    fn size_of_motion(&mut self, squares: &mut Vec<Squares>) {
-        let system = &*self.system;
-        squares.clear();
-        squares.resize(system.parts.len(), Squares::default());
-        if !self.maps.is_static() {
-            let add = |part: usize, square: f64| squares[part].momentum += square / self.dt.powi(2);
-            self.squares_of_momentum(add);
-        }
-        for (span, map) in self.maps.spans() {
-            for i in span {
-                let inertia = map.inertia.x * system.mass.lumped[i] * self.vectors.x[i];
-                squares[system.part_of(i)].inertia_rounding += (f64::EPSILON * inertia).powi(2);
-            }
-        }
-        let add = |unknown: usize, square: f64| {
-            let part = system.part_of(unknown);
-            squares[part].rounding += (2.0 * f64::EPSILON).powi(2) * square;
-        };
-        self.squares_of_places(1.0, add);
-    }
-
     /// Squares of M v of the motion at the start of the step, by connected part, N² s².
-    fn squares_of_momentum(&self, mut add: impl FnMut(usize, f64)) {
+    pub(super) fn squares_of_momentum(&self, mut add: impl FnMut(usize, f64)) {
         let (system, v) = (&*self.system, &self.state.motion.v);
         let unknowns = &system.unknowns;
         for (body, masses) in system.body_masses.iter().enumerate() {
@@ -243,70 +258,8 @@ impl Driver {
         }
     }
 
-    /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
-    /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random. Places count from
-    /// [`System::origin`](crate::System).
-    pub(super) fn rounding(&self) -> f64 {
-        self.rounding_with(1.0)
-    }
-
-    /// The same of forces alone, without gaps: those of bodies at small strain are of displacements, and places do not count.
-    pub fn rounding_of_forces(&self) -> f64 {
-        let finite = self.system.bodies.iter().any(Body::has_finite_motion);
-        self.rounding_with(if finite { 1.0 } else { 0.0 })
-    }
-
-    /// Norm of the forces that the iterations of the last step may have left unbalanced, N; zero of linear steps.
-    pub fn left_over(&self) -> f64 {
-        self.left_over
-    }
-
-    /// `places`: factor of the distances from the origin.
-    fn rounding_with(&self, places: f64) -> f64 {
-        let mut sum = 0.0;
-        self.squares_of_places(places, |_, square| sum += square);
-        2.0 * f64::EPSILON * sum.sqrt()
-    }
-
-    /// Squares of the stiffness of each unknown times its place, N². `places`: factor of the distances from the origin.
-    fn squares_of_places(&self, places: f64, add: impl FnMut(usize, f64)) {
-        let (system, u) = (&self.system, &self.state.motion.u);
-        let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
-            Kind::Translation(axis) => {
-                let x = &system.x[system.unknowns.node(unknown) as usize];
-                places * (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
-            }
-            Kind::Rotation(_) | Kind::Amplitude(_) => u[unknown].abs(),
-        });
-        self.effective
-            .stiffness_squares((system, &self.maps), sizes, add);
-    }
-
-    pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
-        let (node, body, cell) = self.place_of(self.worst_unknown());
-        let contact = match self.worst_point() {
-            Some((point, defect)) if defect > 1.0 => {
-                format!("; its law is missed most by {}", self.name(point))
-            }
-            _ => String::new(),
-        };
-        let last = self.residuals.len().saturating_sub(8);
-        let history = self.residuals[last..].iter().map(|r| format!("{r:.1e}"));
-        Error::Equilibrium {
-            step: self.state.step + 1,
-            time: self.state.time,
-            dt: self.dt,
-            passes,
-            node,
-            body,
-            cell,
-            contact: contact.into(),
-            history: history.collect::<Vec<_>>().join(", ").into(),
-        }
-    }
-
     /// The unknown whose forces are least in balance.
-    fn worst_unknown(&self) -> usize {
+    pub(super) fn worst_unknown(&self) -> usize {
         let (system, vectors) = (&*self.system, &self.vectors);
         let imbalance = |i: usize| match system.fixed[i] {
             true => 0.0,
@@ -326,7 +279,7 @@ impl Driver {
     }
 
     /// Node of the mesh of an unknown, its body, and the first cell of the body at the node.
-    fn place_of(&self, unknown: usize) -> (Box<MeshNode>, Box<str>, ElementId) {
+    pub(super) fn place_of(&self, unknown: usize) -> (Box<MeshNode>, Box<str>, ElementId) {
         let system = &*self.system;
         let node = system.unknowns.node(unknown);
         let owns = |masses: &Vec<(u32, f64)>| masses.iter().any(|(n, _)| *n == node);
@@ -351,6 +304,78 @@ impl Driver {
             body,
             cell,
         })
+    }
+}
+
+impl Links {
+    /// The residual with the forces of links as they stand.
+    pub(super) fn add_link_force(&self, attempt: &mut Attempt) {
+        let vectors = &mut attempt.vectors;
+        let forces = self.force.iter().zip(&vectors.unlinked);
+        for (i, (link, unlinked)) in forces.enumerate() {
+            vectors.residual[i] = match attempt.system.fixed[i] {
+                true => 0.0,
+                false => unlinked + link,
+            };
+        }
+    }
+}
+
+impl Parts {
+    /// Squares of what the motion at the start of the step says: of the momentum per step, and of what rounding leaves of forces.
+    pub(super) fn size_of_motion(&self, attempt: &Attempt, squares: &mut Vec<Squares>) {
+        let system = &*attempt.system;
+        squares.clear();
+        squares.resize(system.parts.len(), Squares::default());
+        if !attempt.maps.is_static() {
+            let add =
+                |part: usize, square: f64| squares[part].momentum += square / attempt.dt.powi(2);
+            attempt.squares_of_momentum(add);
+        }
+        for (span, map) in attempt.maps.spans() {
+            for i in span {
+                let inertia = map.inertia.x * system.mass.lumped[i] * attempt.vectors.x[i];
+                squares[system.part_of(i)].inertia_rounding += (f64::EPSILON * inertia).powi(2);
+            }
+        }
+        let add = |unknown: usize, square: f64| {
+            let part = system.part_of(unknown);
+            squares[part].rounding += (2.0 * f64::EPSILON).powi(2) * square;
+        };
+        self.squares_of_places(attempt, 1.0, add);
+    }
+
+    /// Norm of what rounding of the positions leaves in the internal forces, N. Displacements cannot be told apart within
+    /// ε |u|, which changes the force of each unknown by about ε K_ii |u|, at random. Places count from
+    /// [`System::origin`](crate::System).
+    pub(super) fn rounding(&self, attempt: &Attempt) -> f64 {
+        self.rounding_with(attempt, 1.0)
+    }
+
+    /// `places`: factor of the distances from the origin.
+    pub(super) fn rounding_with(&self, attempt: &Attempt, places: f64) -> f64 {
+        let mut sum = 0.0;
+        self.squares_of_places(attempt, places, |_, square| sum += square);
+        2.0 * f64::EPSILON * sum.sqrt()
+    }
+
+    /// Squares of the stiffness of each unknown times its place, N². `places`: factor of the distances from the origin.
+    pub(super) fn squares_of_places(
+        &self,
+        attempt: &Attempt,
+        places: f64,
+        add: impl FnMut(usize, f64),
+    ) {
+        let (system, u) = (&attempt.system, &attempt.state.motion.u);
+        let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
+            Kind::Translation(axis) => {
+                let x = &system.x[system.unknowns.node(unknown) as usize];
+                places * (x[axis] - system.origin[axis]).abs() + u[unknown].abs()
+            }
+            Kind::Rotation(_) | Kind::Amplitude(_) => u[unknown].abs(),
+        });
+        self.effective
+            .stiffness_squares((system, &attempt.maps), sizes, add);
     }
 }
 

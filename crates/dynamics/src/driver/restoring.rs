@@ -12,19 +12,21 @@ use crate::step_terms::Jump;
 impl Driver {
     /// Gives the velocity back what the contact took, if the scheme does so.
     pub(super) fn restore(&mut self) {
-        if !self.system.scheme.get().restores_contact_work() || self.maps.is_static() {
+        if !self.attempt.system.scheme.get().restores_contact_work()
+            || self.attempt.maps.is_static()
+        {
             return;
         }
-        self.projected.clear();
+        self.stages.projected.clear();
         let (rows, projected, works) = (
-            &self.pairing.rows,
-            &mut self.projected,
-            &mut self.restoring.works,
+            &self.contacts.pairing.rows,
+            &mut self.stages.projected,
+            &mut self.stages.restoring.works,
         );
-        let [old, new] = [&self.state, &self.next];
+        let [old, new] = [&self.attempt.state, &self.attempt.next];
         works.clear();
         projected.values.clear();
-        for &point in &self.candidates {
+        for &point in &self.contacts.candidates {
             let at = point as usize;
             let [before, now] = [old, new].map(|state| state.interface.status[at]);
             if before != Status::Open || now == Status::Open {
@@ -32,7 +34,7 @@ impl Driver {
             }
             let on = |x: &[f64]| rows.product(at, x);
             let obstacle = rows.rate(at);
-            let way = on(&new.motion.u) - on(&old.motion.u) + self.dt * obstacle;
+            let way = on(&new.motion.u) - on(&old.motion.u) + self.attempt.dt * obstacle;
             let taken = -new.interface.force[at] * way;
             if taken > 0.0 {
                 projected.points.push(point);
@@ -40,14 +42,14 @@ impl Driver {
                 works.push(taken);
             }
         }
-        let Some(stage) = &mut self.impulses else {
+        let Some(stage) = &mut self.stages.impulses else {
             return;
         };
         if works.is_empty() {
             return;
         }
-        let Projected { points, values, .. } = &self.projected;
-        stage.give_work(&self.system, rows, points, values, works);
+        let Projected { points, values, .. } = &self.stages.projected;
+        stage.give_work(&self.attempt.system, rows, points, values, works);
         let impulses = self.jump_velocity();
         let (work, work_obstacles) = self.works_of_impulses();
         let jump = Jump {

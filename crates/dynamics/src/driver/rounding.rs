@@ -7,25 +7,25 @@
 
 use carom_algebra::unknowns::Kind;
 
-use super::Driver;
 use super::effective::Matrices;
+use super::owners::{Attempt, Parts};
 use crate::system::{Maps, System};
 use crate::tolerated::Tolerated;
 
 /// Root of the number of terms of a row: errors of either sign.
 const TERMS: f64 = 8.0;
 
-impl Driver {
+impl Parts {
     /// That of the step just taken.
-    pub(super) fn rounding_of_step(&mut self) -> Tolerated {
+    pub(super) fn rounding_of_step(&mut self, attempt: &Attempt) -> Tolerated {
         let Some(matrices) = &mut self.effective.now else {
             return Tolerated::default();
         };
-        let system = &self.system;
+        let system = &attempt.system;
         if matrices.stiffness.is_empty() {
-            matrices.stiffness = stiffness(system, matrices, &self.maps);
+            matrices.stiffness = stiffness(system, matrices, &attempt.maps);
         }
-        let (old, new) = (&self.state.motion.u, &self.next.motion.u);
+        let (old, new) = (&attempt.state.motion.u, &attempt.next.motion.u);
         let (mut energy, mut size, mut sum) = (0.0, 0.0_f64, 0.0);
         for (i, stiffness) in matrices.stiffness.iter().enumerate() {
             energy += stiffness * new[i].abs() * (new[i] - old[i]).abs();
@@ -37,7 +37,7 @@ impl Driver {
         let unit = TERMS * 0.5 * f64::EPSILON;
         Tolerated {
             energy: unit * energy,
-            momentum: unit * self.dt * (size * sum).sqrt(),
+            momentum: unit * attempt.dt * (size * sum).sqrt(),
         }
     }
 }

@@ -12,6 +12,7 @@ use carom_contact::Search;
 
 use super::Driver;
 use super::mixing::{LARGEST, LARGEST_OF_FLOATING};
+use super::owners::{Attempt, Parts};
 use super::pieces::Pieces;
 use super::refine::WITHIN;
 use super::residual::Standing;
@@ -47,22 +48,19 @@ impl Driver {
     /// No equilibrium, an element or a matrix that fails.
     pub(super) fn solve(&mut self) -> Result<(), Error> {
         match self.solve_from_guesses() {
-            Err(error) if !self.interrupt.is_set() && self.leaves_iterations() => {
+            Err(error)
+                if !self.attempt.interrupt.is_set()
+                    && self.parts.leaves_iterations(&self.attempt) =>
+            {
                 tracing::debug!(
                     "step {}: {error}; once more with factors",
-                    self.state.step + 1
+                    self.attempt.state.step + 1
                 );
-                self.notices.factored.add(|| error.to_string());
+                self.attempt.notices.factored.add(|| error.to_string());
                 self.solve_from_guesses()
             }
             other => other,
         }
-    }
-
-    fn leaves_iterations(&mut self) -> bool {
-        let between = self.between();
-        let (system, maps) = (&self.system, &self.maps);
-        self.effective.leave_iterations(system, maps, between)
     }
 
     fn solve_from_guesses(&mut self) -> Result<(), Error> {
@@ -70,7 +68,7 @@ impl Driver {
         match solved {
             // elements inside out: once more from another guess
             Err(Error::Body(_) | Error::OnRank { .. })
-                if !self.maps.is_static() && !self.is_affine() =>
+                if !self.attempt.maps.is_static() && !self.is_affine() =>
             {
                 self.iterate(true)
             }
@@ -84,40 +82,43 @@ impl Driver {
         if self.is_affine() {
             return self.solve_at_once();
         }
-        let passes = self.system.nonlinear.iteration.passes;
+        let passes = self.attempt.system.nonlinear.iteration.passes;
         let (mut limit, most) = (passes, MOVES * passes);
         let mut standing = self.standing();
         let (mut pass, mut before) = (0, None);
         while pass < limit {
-            if self.interrupt.is_set() {
+            if self.attempt.interrupt.is_set() {
                 return Err(Error::Interrupted);
             }
-            let jumps = self.jumps();
-            self.residuals.push(standing.imbalance);
+            let jumps = self.attempt.jumps();
+            self.parts.residuals.push(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing, before) {
                 return self.check_held(pass);
             }
-            if self.floats() && !jumps && self.approach(standing.scale)? {
-                self.mixing.clear();
+            if self.parts.floats(&self.attempt) && !jumps && self.approach(standing.scale)? {
+                self.parts.mixing.clear();
                 standing = self.standing();
             }
             if self.wants_factor(pass) {
                 self.renew()?;
-                (self.pace.age, self.pace.made) = (0, pass);
+                (self.parts.pace.age, self.parts.pace.made) = (0, pass);
             }
-            self.pace.age += 1;
-            self.carried.keep(&self.next.interface);
+            self.parts.pace.age += 1;
+            self.parts.carried.keep(&self.attempt.next.interface);
             self.solve_interface()?;
             // a motion that contacts hardly hold is far above the noise of the forces
             // what is mixed of a motion would be mixed of the multipliers too
             if self.refines() {
                 self.refine()?;
             }
-            let mixes = !jumps && !self.has_links();
-            if mixes && (self.floats() || standing.imbalance > NOISY * standing.rounding) {
+            let mixes = !jumps && !self.attempt.has_links();
+            if mixes
+                && (self.parts.floats(&self.attempt)
+                    || standing.imbalance > NOISY * standing.rounding)
+            {
                 self.mix();
             }
-            if self.floats() && !jumps && self.restrain() {
+            if self.parts.floats(&self.attempt) && !jumps && self.restrain() {
                 // the part has moved on: iterations begin anew
                 limit = most.min(pass + passes);
             }
@@ -133,51 +134,51 @@ impl Driver {
 
     /// First guess, residual and pairing of the attempt.
     pub(super) fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
-        self.residuals.clear();
-        (self.pace.age, self.pace.fresh) = (0, self.state.control.pace);
-        self.pace.is_sized = false;
-        self.floating.begin();
-        self.mixing.clear();
-        self.take_matrices()?;
-        self.begin_links();
-        self.predict();
+        self.parts.residuals.clear();
+        (self.parts.pace.age, self.parts.pace.fresh) = (0, self.attempt.state.control.pace);
+        self.parts.pace.is_sized = false;
+        self.parts.floating.begin();
+        self.parts.mixing.clear();
+        self.parts.take_matrices(&mut self.attempt)?;
+        self.links.begin_links(&self.attempt);
+        self.attempt.predict();
         if rigidly {
-            self.predict_rigidly();
+            self.attempt.predict_rigidly();
         }
-        let interface = &mut self.next.interface;
-        interface.follow(&self.state.interface);
-        self.guess_slips();
-        self.take_weak();
-        if self.prepared {
-            self.add_link_force();
+        let interface = &mut self.attempt.next.interface;
+        interface.follow(&self.attempt.state.interface);
+        self.contacts.guess_slips(&mut self.attempt);
+        self.contacts.take_weak(&self.attempt);
+        if self.parts.prepared {
+            self.links.add_link_force(&mut self.attempt);
             return Ok(());
         }
         self.evaluate(true)?;
-        self.vectors.ahead.clear();
-        self.search.iter_mut().for_each(Search::begin_step);
-        self.begin_far();
-        self.forget_closings();
-        self.pair(true);
-        if (0..self.system.contacts.len()).any(|k| self.looks_ahead(k)) {
+        self.attempt.vectors.ahead.clear();
+        self.contacts.search.iter_mut().for_each(Search::begin_step);
+        self.contacts.begin_far(&self.attempt);
+        self.contacts.forget_closings();
+        self.contacts.pair(&mut self.attempt, true);
+        if (0..self.attempt.system.contacts.len()).any(|k| self.attempt.looks_ahead(k)) {
             self.look_ahead()?;
-            self.pair(true);
+            self.contacts.pair(&mut self.attempt, true);
         }
-        self.find_closings();
+        self.contacts.find_closings(&mut self.attempt);
         Ok(())
     }
 
     /// The one iteration of a step that is linear in the unknown.
     fn solve_at_once(&mut self) -> Result<(), Error> {
-        self.residuals.push(0.0);
+        self.parts.residuals.push(0.0);
         self.solve_interface()?;
-        let vectors = &mut self.vectors;
+        let vectors = &mut self.attempt.vectors;
         for (x, dx) in vectors.x.iter_mut().zip(&vectors.dx) {
             *x += dx;
         }
-        self.move_links(1.0);
+        self.links.move_links(&self.attempt, 1.0);
         self.spread();
-        self.left_over = match self.system.is_nonlinear() {
-            true => self.scale_of_forces() * self.system.nonlinear.iteration.tolerance,
+        self.parts.left_over = match self.attempt.system.is_nonlinear() {
+            true => self.scale_of_forces() * self.attempt.system.nonlinear.iteration.tolerance,
             false => 0.0,
         };
         Ok(())
@@ -188,15 +189,192 @@ impl Driver {
     /// forces of links, whose passes need answers that are smooth in them.
     fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
         let gains = before.is_none_or(|before| standing.excess < GAIN * before);
-        let gains = gains && self.link_force.is_empty();
+        let gains = gains && self.links.force.is_empty();
         // the last iteration of those that converge quadratically is long: points that stick would slip by its square
         let most = if self.refines() { WITHIN } else { 1.0 };
         (standing.excess <= 1.0 || standing.is_rounding && !gains) && standing.defect <= most
     }
 
+    /// Whether this iteration needs a new factor.
+    fn wants_factor(&mut self, pass: usize) -> bool {
+        if !self.parts.effective.iterates() {
+            return false;
+        }
+        if self.refines() && self.parts.pace.age > 0 {
+            return self.parts.wants_tangent(&self.attempt);
+        }
+        let (Some(&now), Some(price)) = (self.parts.residuals.last(), self.parts.effective.price())
+        else {
+            return true;
+        };
+        let Some(ratio) = self.contraction() else {
+            return self.parts.pace.age == 0;
+        };
+        let least = if self.alternates() { 1.0 } else { 0.5 };
+        if ratio.is_nan() || ratio >= least {
+            return true;
+        }
+        let left = (self.attempt.system.nonlinear.iteration.tolerance / now).ln();
+        let needed = left / ratio.ln();
+        if self.alternates() && self.parts.pace.age == 2 && self.parts.pace.made > 0 {
+            self.parts.pace.fresh = ratio;
+        }
+        let fresh = match self.parts.pace.fresh > 0.0 {
+            true => (left / self.parts.pace.fresh.ln()).max(FRESH),
+            false => FRESH,
+        };
+        let keeps = needed <= fresh + TANGENT + price;
+        tracing::debug!(
+            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
+             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
+            self.attempt.state.step + 1,
+            ratio,
+            if keeps { "kept" } else { "renewed" },
+            TANGENT + price,
+        );
+        !keeps
+    }
+
+    /// Whether residuals fall by turns fast and slowly.
+    fn alternates(&self) -> bool {
+        self.attempt.between() && !self.refines()
+    }
+
+    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
+    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
+    /// two iterations are looked at.
+    fn contraction(&self) -> Option<f64> {
+        match (&self.parts.residuals[..], self.parts.pace.age) {
+            (_, 0) => None,
+            ([.., before, now], 1) if !self.alternates() => Some(now / before),
+            (_, 1) => None,
+            ([.., before, _, now], _) if self.alternates() => Some((now / before).sqrt()),
+            ([.., before, now], _) => Some(now / before),
+            _ => None,
+        }
+    }
+
+    /// Goes the way of the iteration, or as much of it as does not make things much worse.
+    fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
+        self.attempt
+            .vectors
+            .before
+            .copy_from_slice(&self.attempt.vectors.x);
+        let mut share = 1.0;
+        let (mut last, mut gains) = (None, false);
+        for shortening in 0..=SHORTENINGS {
+            let vectors = &mut self.attempt.vectors;
+            for (i, x) in vectors.x.iter_mut().enumerate() {
+                *x = vectors.before[i] + share * vectors.dx[i];
+            }
+            if self.parts.floats(&self.attempt) {
+                self.parts.turn(&mut self.attempt, share);
+            }
+            self.links.move_links(&self.attempt, share);
+            match self.evaluate(false) {
+                Ok(()) => {
+                    self.contacts.pair(&mut self.attempt, false);
+                    let standing = self.standing();
+                    let grows = standing.imbalance > GROWTH * before.imbalance.max(1e-6);
+                    if jumps || !grows || self.is_affine() {
+                        (last, gains) = (Some(Ok(standing)), true);
+                        break;
+                    }
+                    last = Some(Ok(standing));
+                }
+                Err(error) => last = Some(Err(error)),
+            }
+            if shortening < SHORTENINGS {
+                share *= 0.5;
+                self.parts.carried.halve(&mut self.attempt.next.interface);
+                self.contacts.take_weak(&self.attempt);
+            }
+        }
+        if jumps {
+            self.attempt.shorten_jump(1.0 - share);
+        }
+        match last {
+            Some(Ok(standing)) => {
+                if !gains {
+                    let place = self.attempt.place_of_imbalance();
+                    self.attempt.notices.worse.add(|| place);
+                }
+                // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as
+                // good as before
+                if share < 1.0 {
+                    self.parts.mixing.clear();
+                } else if standing.imbalance > before.imbalance && !self.parts.floats(&self.attempt)
+                {
+                    self.parts.mixing.keep_last();
+                }
+                Ok(standing)
+            }
+            Some(outcome) => outcome,
+            None => Err(self.no_equilibrium(0)),
+        }
+    }
+
+    /// Mixes the iteration that has been computed with those before it.
+    fn mix(&mut self) {
+        let largest = match self.parts.floats(&self.attempt) {
+            true => LARGEST_OF_FLOATING,
+            false => LARGEST,
+        };
+        let way = (
+            &self.attempt.vectors.x[..],
+            &mut self.attempt.vectors.dx[..],
+        );
+        if self
+            .parts
+            .mixing
+            .mix(way, &mut self.attempt.next.interface, largest)
+        {
+            self.contacts.take_weak(&self.attempt);
+        }
+    }
+}
+
+impl Parts {
+    pub(super) fn leaves_iterations(&mut self, attempt: &Attempt) -> bool {
+        let between = attempt.between();
+        let (system, maps) = (&attempt.system, &attempt.maps);
+        self.effective.leave_iterations(system, maps, between)
+    }
+
+    /// Whether an iteration whose error is that of the bodies alone needs their derivative anew: with it residuals go on as r₊ = c r²
+    /// with the c of the last iteration, else at its rate. A tangent with its factor was measured to cost about what the
+    /// passes that it saves, with 888 unknowns and with 2304 (decision 019).
+    pub(super) fn wants_tangent(&self, attempt: &Attempt) -> bool {
+        let [.., before, now] = self.residuals[..] else {
+            return false;
+        };
+        let ratio = now / before;
+        if ratio.is_nan() || ratio >= 0.5 {
+            return true;
+        }
+        let tolerance = attempt.system.nonlinear.iteration.tolerance;
+        let kept = (tolerance / now).ln() / ratio.ln();
+        let (mut left, mut newer) = (now, 0.0);
+        while left > tolerance {
+            left *= ratio * (left / before);
+            newer += 1.0;
+        }
+        let renewed = kept > newer;
+        tracing::debug!(
+            "step {}, iteration {}: residual {now:e}, {ratio} times the one before; the factor is {}: {kept:.1} iterations \
+             with it against {newer} with a new one",
+            attempt.state.step + 1,
+            self.residuals.len() - 1,
+            if renewed { "renewed" } else { "kept" },
+        );
+        renewed
+    }
+}
+
+impl Attempt {
     /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
     /// the first iteration, so that the inside of the body goes along.
-    fn predict(&mut self) {
+    pub(super) fn predict(&mut self) {
         let system = Arc::clone(&self.system);
         let motion = &self.state.motion;
         let vectors = &mut self.vectors;
@@ -234,168 +412,13 @@ impl Driver {
         }
     }
 
-    /// Whether this iteration needs a new factor.
-    fn wants_factor(&mut self, pass: usize) -> bool {
-        if !self.effective.iterates() {
-            return false;
-        }
-        if self.refines() && self.pace.age > 0 {
-            return self.wants_tangent();
-        }
-        let (Some(&now), Some(price)) = (self.residuals.last(), self.effective.price()) else {
-            return true;
-        };
-        let Some(ratio) = self.contraction() else {
-            return self.pace.age == 0;
-        };
-        let least = if self.alternates() { 1.0 } else { 0.5 };
-        if ratio.is_nan() || ratio >= least {
-            return true;
-        }
-        let left = (self.system.nonlinear.iteration.tolerance / now).ln();
-        let needed = left / ratio.ln();
-        if self.alternates() && self.pace.age == 2 && self.pace.made > 0 {
-            self.pace.fresh = ratio;
-        }
-        let fresh = match self.pace.fresh > 0.0 {
-            true => (left / self.pace.fresh.ln()).max(FRESH),
-            false => FRESH,
-        };
-        let keeps = needed <= fresh + TANGENT + price;
-        tracing::debug!(
-            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
-             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
-            self.state.step + 1,
-            ratio,
-            if keeps { "kept" } else { "renewed" },
-            TANGENT + price,
-        );
-        !keeps
-    }
-
-    /// Whether an iteration whose error is that of the bodies alone needs their derivative anew: with it residuals go on as r₊ = c r²
-    /// with the c of the last iteration, else at its rate. A tangent with its factor was measured to cost about what the
-    /// passes that it saves, with 888 unknowns and with 2304 (decision 019).
-    fn wants_tangent(&self) -> bool {
-        let [.., before, now] = self.residuals[..] else {
-            return false;
-        };
-        let ratio = now / before;
-        if ratio.is_nan() || ratio >= 0.5 {
-            return true;
-        }
-        let tolerance = self.system.nonlinear.iteration.tolerance;
-        let kept = (tolerance / now).ln() / ratio.ln();
-        let (mut left, mut newer) = (now, 0.0);
-        while left > tolerance {
-            left *= ratio * (left / before);
-            newer += 1.0;
-        }
-        let renewed = kept > newer;
-        tracing::debug!(
-            "step {}, iteration {}: residual {now:e}, {ratio} times the one before; the factor is {}: {kept:.1} iterations \
-             with it against {newer} with a new one",
-            self.state.step + 1,
-            self.residuals.len() - 1,
-            if renewed { "renewed" } else { "kept" },
-        );
-        renewed
-    }
-
-    /// Whether residuals fall by turns fast and slowly.
-    fn alternates(&self) -> bool {
-        self.between() && !self.refines()
-    }
-
-    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
-    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
-    /// two iterations are looked at.
-    fn contraction(&self) -> Option<f64> {
-        match (&self.residuals[..], self.pace.age) {
-            (_, 0) => None,
-            ([.., before, now], 1) if !self.alternates() => Some(now / before),
-            (_, 1) => None,
-            ([.., before, _, now], _) if self.alternates() => Some((now / before).sqrt()),
-            ([.., before, now], _) => Some(now / before),
-            _ => None,
-        }
-    }
-
     /// Leaves this part of the jump of the supports to the iterations to come.
-    fn shorten_jump(&mut self, rest: f64) {
+    pub(super) fn shorten_jump(&mut self, rest: f64) {
         let vectors = &mut self.vectors;
         for jump in &mut vectors.jump {
             *jump *= rest;
         }
         vectors.jumps = vectors.jump.iter().any(|jump| *jump != 0.0);
-    }
-
-    /// Goes the way of the iteration, or as much of it as does not make things much worse.
-    fn go(&mut self, before: &Standing, jumps: bool) -> Result<Standing, Error> {
-        self.vectors.before.copy_from_slice(&self.vectors.x);
-        let mut share = 1.0;
-        let (mut last, mut gains) = (None, false);
-        for shortening in 0..=SHORTENINGS {
-            let vectors = &mut self.vectors;
-            for (i, x) in vectors.x.iter_mut().enumerate() {
-                *x = vectors.before[i] + share * vectors.dx[i];
-            }
-            if self.floats() {
-                self.turn(share);
-            }
-            self.move_links(share);
-            match self.evaluate(false) {
-                Ok(()) => {
-                    self.pair(false);
-                    let standing = self.standing();
-                    let grows = standing.imbalance > GROWTH * before.imbalance.max(1e-6);
-                    if jumps || !grows || self.is_affine() {
-                        (last, gains) = (Some(Ok(standing)), true);
-                        break;
-                    }
-                    last = Some(Ok(standing));
-                }
-                Err(error) => last = Some(Err(error)),
-            }
-            if shortening < SHORTENINGS {
-                share *= 0.5;
-                self.carried.halve(&mut self.next.interface);
-                self.take_weak();
-            }
-        }
-        if jumps {
-            self.shorten_jump(1.0 - share);
-        }
-        match last {
-            Some(Ok(standing)) => {
-                if !gains {
-                    let place = self.place_of_imbalance();
-                    self.notices.worse.add(|| place);
-                }
-                // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as
-                // good as before
-                if share < 1.0 {
-                    self.mixing.clear();
-                } else if standing.imbalance > before.imbalance && !self.floats() {
-                    self.mixing.keep_last();
-                }
-                Ok(standing)
-            }
-            Some(outcome) => outcome,
-            None => Err(self.no_equilibrium(0)),
-        }
-    }
-
-    /// Mixes the iteration that has been computed with those before it.
-    fn mix(&mut self) {
-        let largest = match self.floats() {
-            true => LARGEST_OF_FLOATING,
-            false => LARGEST,
-        };
-        let way = (&self.vectors.x[..], &mut self.vectors.dx[..]);
-        if self.mixing.mix(way, &mut self.next.interface, largest) {
-            self.take_weak();
-        }
     }
 
     /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration may turn elements

@@ -3,9 +3,9 @@
 
 use carom_bodies::Placement;
 
-use super::Driver;
+use super::owners::Attempt;
 
-impl Driver {
+impl Attempt {
     /// Writes the forces of springs in the balance of the step, N; none without springs.
     pub(super) fn balanced_springs(&mut self, forces: &mut Vec<f64>) {
         let super::Vectors { x, push, place, .. } = &mut self.vectors;

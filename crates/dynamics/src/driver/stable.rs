@@ -9,6 +9,7 @@ use carom_bodies::{Body, Looks, Seen};
 use rayon::prelude::*;
 
 use super::Driver;
+use super::owners::{Attempt, Parts};
 use crate::error::Error;
 use crate::shapes::Shape;
 use crate::system::System;
@@ -40,23 +41,23 @@ impl Driver {
     /// # Errors
     /// An element without tangent.
     pub(super) fn renew_stable(&mut self, dt: f64) -> Result<(), Error> {
-        let system = std::sync::Arc::clone(&self.system);
+        let system = std::sync::Arc::clone(&self.attempt.system);
         let explicit = system
             .schemes
             .iter()
             .any(|scheme| scheme.get().is_explicit());
-        if !explicit || self.is_static() || !system.bodies.iter().any(changes) {
+        if !explicit || self.attempt.is_static() || !system.bodies.iter().any(changes) {
             return Ok(());
         }
-        let known = !self.state.shapes.bodies.is_empty();
+        let known = !self.attempt.state.shapes.bodies.is_empty();
         if known {
-            self.state.shapes.changed += dt * self.rate_of_lengths();
-            if self.state.shapes.changed <= CHANGE {
+            self.attempt.state.shapes.changed += dt * self.rate_of_lengths();
+            if self.attempt.state.shapes.changed <= CHANGE {
                 return Ok(());
             }
         }
         // in the memory of the last look
-        let mut bodies = std::mem::take(&mut self.state.shapes.bodies);
+        let mut bodies = std::mem::take(&mut self.attempt.state.shapes.bodies);
         bodies.clear();
         let mut all = Seen::default();
         self.look_at_bodies(|body, seen, velocity| {
@@ -64,10 +65,10 @@ impl Driver {
             let shortest = seen.shortest;
             bodies.push(changes(body).then_some(Shape { velocity, shortest }));
         })?;
-        let shapes = &mut self.state.shapes;
+        let shapes = &mut self.attempt.state.shapes;
         shapes.bodies = bodies;
         if all.is_renewed {
-            self.state.control.stable = PART * system.critical_with(all.bound.frequency);
+            self.attempt.state.control.stable = PART * system.critical_with(all.bound.frequency);
             shapes.by_compression = all.bound.by_compression;
         }
         shapes.changed = all.changed;
@@ -76,22 +77,29 @@ impl Driver {
 
     /// Bound of the rate at which lengths in elements change, relative, 1/s.
     fn rate_of_lengths(&mut self) -> f64 {
-        let (system, v) = (&*self.system, &self.state.motion.v);
-        let (parts, bodies) = (&system.part_of_body, &self.state.shapes.bodies);
+        let (system, v) = (&*self.attempt.system, &self.attempt.state.motion.v);
+        let (parts, bodies) = (&system.part_of_body, &self.attempt.state.shapes.bodies);
         // the last pass has found them
-        if let Some(direct) = self.direct.as_ref().filter(|own| own.ready.is_some()) {
+        if let Some(direct) = self
+            .explicit
+            .direct
+            .as_ref()
+            .filter(|own| own.ready.is_some())
+        {
             let fastest = |part: usize, _: &[f64; 3]| direct.parts[part].fastest;
-            return self.rates.largest(parts, bodies, fastest);
+            return self.explicit.rates.largest(parts, bodies, fastest);
         }
-        match &self.shared {
+        match &self.ranks.shared {
             None => {
                 let fastest = |part: usize, w: &[f64; 3]| fastest(system, part, (w, v));
-                self.rates.largest(parts, bodies, fastest)
+                self.explicit.rates.largest(parts, bodies, fastest)
             }
             Some(shared) => {
-                self.rates.refer(parts, bodies);
-                let squares = shared.fastest(system, &self.rates.reference, v);
-                self.rates.largest(parts, bodies, |part, _| squares[part])
+                self.explicit.rates.refer(parts, bodies);
+                let squares = shared.fastest(system, &self.explicit.rates.reference, v);
+                self.explicit
+                    .rates
+                    .largest(parts, bodies, |part, _| squares[part])
             }
         }
     }
@@ -104,15 +112,15 @@ impl Driver {
         &mut self,
         mut take: impl FnMut(&Body, &Seen, [f64; 3]),
     ) -> Result<(), Error> {
-        let (system, motion) = (&*self.system, &self.state.motion);
-        if let Some(shared) = &mut self.shared {
+        let (system, motion) = (&*self.attempt.system, &self.attempt.state.motion);
+        if let Some(shared) = &mut self.ranks.shared {
             let found = shared.look(system, motion, WORTH * CHANGE)?;
             for (body, (seen, velocity)) in system.bodies.iter().zip(&found) {
                 take(body, seen, *velocity);
             }
             return Ok(());
         }
-        let looks = &mut self.state.shapes.looks;
+        let looks = &mut self.attempt.state.shapes.looks;
         looks.resize_with(system.bodies.len(), Looks::default);
         for (k, (body, looks)) in system.bodies.iter().zip(looks).enumerate() {
             let mut seen = Seen::default();
@@ -129,8 +137,8 @@ impl Driver {
     /// # Errors
     /// A critical step below the smallest part.
     pub(super) fn stable_level(&self, dt: f64) -> Result<u32, Error> {
-        let stable = self.stable_step();
-        let halvings = self.system.nonlinear.iteration.halvings;
+        let stable = self.attempt.stable_step();
+        let halvings = self.attempt.system.nonlinear.iteration.halvings;
         let mut levels = 0..=halvings;
         let whole = dt * (1.0 - ROUNDING);
         let level = levels.find(|&level| whole <= stable * (1u64 << level) as f64);
@@ -143,21 +151,21 @@ impl Driver {
     /// # Errors
     /// A critical step below the smallest part.
     pub(super) fn followed_step(&self) -> Result<f64, Error> {
-        let dt = self.system.dt;
-        let Some(fraction) = self.system.critical_fraction else {
+        let dt = self.attempt.system.dt;
+        let Some(fraction) = self.attempt.system.critical_fraction else {
             return Ok(dt);
         };
-        let most = f64::min(1.0, fraction / PART) * self.stable_step();
+        let most = f64::min(1.0, fraction / PART) * self.attempt.stable_step();
         // a step much larger than the last feeds energy to the fastest waves: one rung at a time; those of a static stage move none
-        let last = match self.state.step > self.system.static_steps() {
-            true => (RUNGS * (dt / self.state.control.taken).log2()).round(),
+        let last = match self.attempt.state.step > self.attempt.system.static_steps() {
+            true => (RUNGS * (dt / self.attempt.state.control.taken).log2()).round(),
             false => 0.0,
         };
         let rungs = (RUNGS * ((dt / most).log2() - ROUNDING))
             .ceil()
             .max(last - 1.0)
             .max(0.0);
-        if rungs > RUNGS * f64::from(self.system.nonlinear.iteration.halvings) {
+        if rungs > RUNGS * f64::from(self.attempt.system.nonlinear.iteration.halvings) {
             return Err(self.shortened(dt, most));
         }
         Ok(match rungs > 0.0 {
@@ -168,7 +176,7 @@ impl Driver {
 
     /// That the smallest part of a step of `dt` (s) is larger than the one that fits, `fitting` (s).
     fn shortened(&self, dt: f64, fitting: f64) -> Error {
-        let (system, state) = (&*self.system, &self.state);
+        let (system, state) = (&*self.attempt.system, &self.attempt.state);
         let halvings = system.nonlinear.iteration.halvings;
         // of several ranks none has all elements as they are now
         let whole = !self.is_shared();
@@ -180,7 +188,7 @@ impl Driver {
             step: state.step + 1,
             time: state.time,
             dt: dt / (1u64 << halvings) as f64,
-            critical: self.stable_step() / PART,
+            critical: self.attempt.stable_step() / PART,
             fitting,
             place: match (body, cell) {
                 (Some(body), Some(cell)) => {
@@ -198,8 +206,27 @@ impl Driver {
         }
     }
 
+    /// Makes the attempt the state; what is known of the shapes goes along.
+    pub(super) fn swap_states(&mut self) {
+        self.attempt
+            .next
+            .motion
+            .compose(&self.attempt.system.unknowns);
+        std::mem::swap(
+            &mut self.attempt.state.shapes,
+            &mut self.attempt.next.shapes,
+        );
+        std::mem::swap(&mut self.attempt.state, &mut self.attempt.next);
+        self.contacts.active.accept();
+        if let Some(direct) = &mut self.explicit.direct {
+            direct.go_on();
+        }
+    }
+}
+
+impl Attempt {
     /// Part of the critical step that a step may have, s, with the bulk viscosity of the fastest compression in the last step.
-    fn stable_step(&self) -> f64 {
+    pub(super) fn stable_step(&self) -> f64 {
         let control = &self.state.control;
         let more = self.state.shapes.by_compression * control.compression;
         match more > 0.0 {
@@ -207,14 +234,16 @@ impl Driver {
             false => control.stable,
         }
     }
+}
 
+impl Parts {
     /// Drops an attempt of `dt` (s) in which bulk viscosity was stronger than its size is stable with: the impact began in it, of which
     /// the step before did not know.
     ///
     /// # Errors
     /// [`Error::Viscous`].
-    pub(super) fn check_viscosity(&self, dt: f64) -> Result<(), Error> {
-        let state = &self.state;
+    pub(super) fn check_viscosity(&self, attempt: &Attempt, dt: f64) -> Result<(), Error> {
+        let state = &attempt.state;
         let more = state.shapes.by_compression * self.stored.compression;
         let critical = 1.0 / (PART / state.control.stable + 0.5 * more);
         if more > 0.0 && dt > critical {
@@ -226,17 +255,6 @@ impl Driver {
             });
         }
         Ok(())
-    }
-
-    /// Makes the attempt the state; what is known of the shapes goes along.
-    pub(super) fn swap_states(&mut self) {
-        self.next.motion.compose(&self.system.unknowns);
-        std::mem::swap(&mut self.state.shapes, &mut self.next.shapes);
-        std::mem::swap(&mut self.state, &mut self.next);
-        self.active.accept();
-        if let Some(direct) = &mut self.direct {
-            direct.go_on();
-        }
     }
 }
 

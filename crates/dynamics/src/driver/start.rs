@@ -18,6 +18,7 @@ use super::impulse::Impulses;
 use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
+use super::owners::{Attempt, Balances, Contacts, Explicit, Parts, RankWork, Stages};
 use super::paired::sums_compliances;
 use super::passage::Passage;
 use super::rebound::Rebound;
@@ -26,7 +27,7 @@ use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
-use super::{Driver, Which};
+use super::{Driver, Which, owners};
 use crate::assembly_energy::{AssemblyEnergies, PartMotion};
 use crate::control::Control;
 use crate::costs::{Costs, Phases};
@@ -84,98 +85,114 @@ impl Driver {
             false => Vec::new(),
         };
         let mut driver = Driver {
-            dt: 0.0,
-            maps,
-            sized: None,
-            manners: Vec::new(),
-            turns: false,
-            by_rate: false,
-            identity: None,
-            effective: Effective::new(),
-            direct,
-            rates: Rates::new(system.parts.len()),
-            shared: None,
-            several: false,
-            looked: 0,
-            floating: Floating::new(&system)?,
+            contacts: Contacts {
+                manners: Vec::new(),
+                turns: false,
+                by_rate: false,
+                interface: Interface::default(),
+                interfaces: Vec::new(),
+                saddle: RefCell::default(),
+                pairing: Pairing::default(),
+                initial: vec![Pairing::default(); system.contacts.len()],
+                search: system.contacts.iter().map(|_| Search::default()).collect(),
+                narrowed: Vec::new(),
+                narrowed_for: 0,
+                active: Active::of(&system),
+                passage: Passage::of(&system),
+                far: Far::of(&system, |_| true),
+                closings: Closings::of(&system),
+                rebound: Rebound::of(&system),
+                candidates: Vec::new(),
+                candidate_data: Vec::new(),
+                free_gaps: Vec::new(),
+                coulomb: Coulomb::default(),
+                weak: WeakForms::new(&system)?,
+                with_weak: WithWeak::default(),
+                stacked: carom_contact::Rows::default(),
+                slips: Vec::new(),
+                failed: None,
+                failed_friction: None,
+                of_contacts: Vec::new(),
+                nodal: Vec::new(),
+                rows_stand: false,
+            },
+            parts: Parts {
+                effective: Effective::new(),
+                floating: Floating::new(&system)?,
+                scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+                force_sweeps: 0,
+                residuals: Vec::new(),
+                pace: Pace::default(),
+                mixing: Mixing::default(),
+                refined: Refined::default(),
+                carried: Carried::default(),
+                squares: Vec::new(),
+                stored: Stored::default(),
+                prepared: false,
+                left_over: 0.0,
+            },
+            links: owners::Links {
+                force: match system.link_rows.is_empty() {
+                    true => Vec::new(),
+                    false => zeros(),
+                },
+                multipliers: Multipliers::new(&system),
+                rows: Arc::clone(&system.link_rows),
+            },
+            stages: Stages {
+                impulses: match staged {
+                    true => Some(Impulses::new(&released)?),
+                    false => None,
+                },
+                projected: Projected::new(points),
+                predictor: Predictor::default(),
+                restoring: Restoring::default(),
+            },
+            explicit: Explicit {
+                direct,
+                rates: Rates::new(system.parts.len()),
+            },
+            ranks: RankWork {
+                shared: None,
+                several: false,
+                looked: 0,
+            },
+            balances: Balances {
+                jump: Jump::default(),
+                reactions: Vec::new(),
+                works: Works::default(),
+            },
             forced: None,
             ahead: system.dt,
             unplanned: None,
-            impulses: match staged {
-                true => Some(Impulses::new(&released)?),
-                false => None,
-            },
-            projected: Projected::new(points),
-            predictor: Predictor::default(),
-            restoring: Restoring::default(),
-            interface: Interface::default(),
-            interfaces: Vec::new(),
-            saddle: RefCell::default(),
-            pairing: Pairing::default(),
-            initial: vec![Pairing::default(); system.contacts.len()],
-            search: system.contacts.iter().map(|_| Search::default()).collect(),
-            narrowed: Vec::new(),
-            narrowed_for: 0,
             watch: Watch::new(&system),
-            active: Active::of(&system),
-            passage: Passage::of(&system),
-            far: Far::of(&system, |_| true),
-            closings: Closings::of(&system),
-            rebound: Rebound::of(&system),
-            candidates: Vec::new(),
-            candidate_data: Vec::new(),
-            free_gaps: Vec::new(),
-            coulomb: Coulomb::default(),
-            interrupt: Interrupt::default(),
-            weak: WeakForms::new(&system)?,
-            with_weak: WithWeak::default(),
-            stacked: carom_contact::Rows::default(),
-            slips: Vec::new(),
-            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
-            force_sweeps: 0,
-            residuals: Vec::new(),
-            pace: Pace::default(),
-            mixing: Mixing::default(),
-            refined: Refined::default(),
-            carried: Carried::default(),
-            jump: Jump::default(),
-            failed: None,
-            failed_friction: None,
-            reactions: Vec::new(),
-            of_contacts: Vec::new(),
-            nodal: Vec::new(),
-            notices: Notices::default(),
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
                 ..StepReport::default()
             },
-            vectors: Vectors {
-                push,
-                ..Vectors::default()
-            },
-            works: Works::default(),
-            squares: Vec::new(),
-            rows_stand: false,
-            next: state_without_motion(&system),
-            state: state_without_motion(&system),
-            stored: Stored::default(),
-            link_force: match system.link_rows.is_empty() {
-                true => Vec::new(),
-                false => zeros(),
-            },
-            multipliers: Multipliers::new(&system),
-            rows: Arc::clone(&system.link_rows),
-            prepared: false,
-            left_over: 0.0,
-            phases: Phases::default(),
             earlier: Costs::default(),
             released: match Arc::ptr_eq(&system, &released) {
                 true => None,
                 false => Some(released),
             },
-            system,
+            attempt: Attempt {
+                dt: 0.0,
+                maps,
+                sized: None,
+                identity: None,
+                interrupt: Interrupt::default(),
+                notices: Notices::default(),
+                vectors: Vectors {
+                    push,
+                    ..Vectors::default()
+                },
+                next: state_without_motion(&system),
+                state: state_without_motion(&system),
+                phases: Phases::default(),
+                system,
+            },
         };
-        let system = Arc::clone(&driver.system);
+        let system = Arc::clone(&driver.attempt.system);
         driver.restart(&system.initial_displacement, &system.initial_velocity)?;
         Ok(driver)
     }
@@ -186,8 +203,8 @@ impl Driver {
     /// As [`Driver::new`].
     pub fn resume(system: Arc<System>, state: State) -> Result<Driver, Error> {
         let mut driver = Driver::new(system)?;
-        driver.next.clone_from(&state);
-        driver.state = state;
+        driver.attempt.next.clone_from(&state);
+        driver.attempt.state = state;
         Ok(driver)
     }
 
@@ -198,16 +215,20 @@ impl Driver {
     /// # Errors
     /// As [`Driver::new`].
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
+        let system = Arc::clone(&self.attempt.system);
         // their room before that of new ones is taken
-        self.state = state_without_motion(&system);
-        self.next = state_without_motion(&system);
-        self.state = empty_state(&system);
-        if self.has_links() {
-            self.link_force.fill(0.0);
+        self.attempt.state = state_without_motion(&system);
+        self.attempt.next = state_without_motion(&system);
+        self.attempt.state = empty_state(&system);
+        if self.attempt.has_links() {
+            self.links.force.fill(0.0);
         }
-        self.state.motion.link_force.clone_from(&self.link_force);
-        let motion = &mut self.state.motion;
+        self.attempt
+            .state
+            .motion
+            .link_force
+            .clone_from(&self.links.force);
+        let motion = &mut self.attempt.state.motion;
         let follows = system.nonlinear.follows.iter();
         let prescribed = follows.map(|follows| follows.unknown as usize);
         for i in (0..system.unknowns())
@@ -227,68 +248,80 @@ impl Driver {
     /// Room for what the start of these steps computes.
     fn make_room_for_start(&mut self) {
         match self.is_direct() {
-            true => self.vectors.make_room_for_start(&self.state.motion),
-            false => self.vectors.make_room(&self.state.motion),
+            true => self
+                .attempt
+                .vectors
+                .make_room_for_start(&self.attempt.state.motion),
+            false => self.attempt.vectors.make_room(&self.attempt.state.motion),
         }
     }
 
     /// Completes the initial state.
     fn start(&mut self) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
-        self.size(system.dt, system.dt);
-        self.prepared = false;
+        let system = Arc::clone(&self.attempt.system);
+        self.contacts.size(&mut self.attempt, system.dt, system.dt);
+        self.parts.prepared = false;
         self.leave_direct();
-        self.state.records = Records::of(&system);
+        self.attempt.state.records = Records::of(&system);
         self.make_room_for_start();
-        self.vectors.x.fill(0.0);
-        self.compress();
+        self.attempt.vectors.x.fill(0.0);
+        self.contacts.compress(&mut self.attempt);
         if !self.is_direct() {
-            self.next.clone_from(&self.state);
+            self.attempt.next.clone_from(&self.attempt.state);
         }
         self.begin()?;
-        if self.has_links() && self.is_static() {
-            self.state.links = Links::at_rest(&system);
-        } else if self.has_links() {
+        if self.attempt.has_links() && self.attempt.is_static() {
+            self.attempt.state.links = Links::at_rest(&system);
+        } else if self.attempt.has_links() {
             self.begin_with_links()?;
         }
         self.keep_for_direct_steps();
-        self.state.control = Control::start(system.dt);
-        self.next.clone_from(&self.state);
-        self.show_followed(0.0);
+        self.attempt.state.control = Control::start(system.dt);
+        self.attempt.next.clone_from(&self.attempt.state);
+        self.attempt.show_followed(0.0);
         self.tell(0.0);
         Ok(())
     }
 
     /// Links change the velocities, on which the forces depend that links answer to.
     fn begin_with_links(&mut self) -> Result<(), Error> {
-        self.start_links()?;
-        self.compress();
+        self.links.start_links(&mut self.attempt)?;
+        self.contacts.compress(&mut self.attempt);
         self.begin()?;
-        self.start_links()?;
+        self.links.start_links(&mut self.attempt)?;
         self.begin()
     }
 
     /// Gives the state the velocities, accelerations and balance with which a stage begins.
     fn begin(&mut self) -> Result<(), Error> {
-        let system = Arc::clone(&self.system);
+        let system = Arc::clone(&self.attempt.system);
         self.make_room_for_start();
-        self.vectors.place.clone_from(&self.state.motion.u);
-        self.vectors.rate.clone_from(&self.state.motion.v);
-        let stored = self.internal((Which::Place, false), |_| 0.0)?;
-        self.state
+        self.attempt
+            .vectors
+            .place
+            .clone_from(&self.attempt.state.motion.u);
+        self.attempt
+            .vectors
+            .rate
+            .clone_from(&self.attempt.state.motion.v);
+        let stored = self
+            .parts
+            .internal(&mut self.attempt, (Which::Place, false), |_| 0.0)?;
+        self.attempt
+            .state
             .motion
             .internal_force
-            .clone_from(&self.vectors.internal);
-        self.evaluate_loads(self.state.time);
-        self.evaluate_damping();
-        if self.maps.first().has_memory() {
-            let motion = &mut self.state.motion;
+            .clone_from(&self.attempt.vectors.internal);
+        self.attempt.evaluate_loads(self.attempt.state.time);
+        self.parts.evaluate_damping(&mut self.attempt);
+        if self.attempt.maps.first().has_memory() {
+            let motion = &mut self.attempt.state.motion;
             motion.memory.clone_from(&motion.v);
         }
         let keeps = |zone: usize| system.schemes[zone].get().keeps_acceleration();
-        if (0..system.schemes.len()).any(keeps) && !self.is_static() {
+        if (0..system.schemes.len()).any(keeps) && !self.attempt.is_static() {
             let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
-            let (vectors, motion) = (&mut self.vectors, &mut self.state.motion);
+            let (vectors, motion) = (&mut self.attempt.vectors, &mut self.attempt.state.motion);
             for i in 0..system.unknowns() {
                 let outside = vectors.load[i] + motion.contact_force[i] + motion.link_of(i);
                 let balance = outside - vectors.internal[i] - vectors.damping[i];
@@ -302,14 +335,170 @@ impl Driver {
         }
         match system.is_nonlinear() {
             true => self.start_works(stored.strain, stored.hardening),
-            false => self.start_identity(stored.strain),
+            false => self.parts.start_identity(&mut self.attempt, stored.strain),
         }
-        self.start_assemblies();
+        self.attempt.start_assemblies();
         Ok(())
     }
 
+    /// Keeps what direct steps need of the start: loads that vary, and forces beside the internal ones.
+    fn keep_for_direct_steps(&mut self) {
+        if !self.is_direct() {
+            return;
+        }
+        let beside = match self.attempt.has_forces_beside() {
+            true => {
+                let (damping, motion) = (&self.attempt.vectors.damping, &self.attempt.state.motion);
+                let own = damping.iter().enumerate();
+                own.map(|(i, own)| own - motion.link_of(i)).collect()
+            }
+            false => Vec::new(),
+        };
+        let mut load = std::mem::take(&mut self.attempt.state.forces.load);
+        if self.attempt.system.nonlinear.loads.is_empty() {
+            load.clear();
+        }
+        self.attempt.state.forces = StepForces {
+            load,
+            damping: beside,
+            ..StepForces::default()
+        };
+        self.attempt.vectors.give_up_room();
+    }
+
+    /// The ledger at the start, where forces are not all linear.
+    fn start_works(&mut self, strain: f64, hardening: f64) {
+        let system = Arc::clone(&self.attempt.system);
+        // where the forces of the start were evaluated
+        let mut springs = Vec::new();
+        self.attempt.springs_at_place(false, &mut springs);
+        self.forces_at_the_start(springs);
+        self.attempt.start_exchange();
+        let identity = self.attempt.identity_of_ledger();
+        let [memory, lagged] =
+            self.parts
+                .own_energies(&mut self.attempt, End::Start, &identity, strain);
+        let motion = &self.attempt.state.motion;
+        let of = (strain, identity.inertia != 0.0, Some(&motion.u[..]));
+        let of_motion = energies(&system, motion, of, &mut self.attempt.vectors.work);
+        let energies = Energies {
+            memory,
+            lagged,
+            ..of_motion.of_zones(&self.attempt.maps, &system, motion)
+        };
+        let kept = &self.attempt.state.forces;
+        let at = |force: &[f64]| match kept.is_empty() {
+            true => Resultant::default(),
+            false => Resultant::at(&system, (&motion.frames, &[&motion.u]), force),
+        };
+        let forces = OutsideForces {
+            loads: at(&kept.load),
+            contacts: at(&kept.contact),
+            supports: at(&kept.reaction).plus(&at(&kept.spring).reversed()),
+            held: Resultant::default(),
+            links: at(&kept.link).plus(&at(&kept.damping).reversed()),
+        };
+        self.attempt.state.ledger = Ledger::start(&energies, &identity, forces);
+        self.attempt.state.ledger.store(hardening);
+    }
+
+    /// Forces that a step with a balance at both of its ends begins with, those of `springs` (N) also by themselves: none where a static stage begins out of balance.
+    fn forces_at_the_start(&mut self, springs: Vec<f64>) {
+        self.attempt.state.forces = StepForces::default();
+        let system = &*self.attempt.system;
+        let of_end = self
+            .attempt
+            .maps
+            .all()
+            .iter()
+            .all(|map| map.impulse.old == 0.0);
+        if of_end && !self.attempt.is_static() {
+            return;
+        }
+        let motion = &self.attempt.state.motion;
+        let mut inertia = vec![0.0; system.unknowns()];
+        if !self.attempt.is_static() {
+            system.mass.multiply(&motion.a, &mut inertia);
+        } else if !self.attempt.is_balanced() {
+            return;
+        }
+        let (load, internal) = (&self.attempt.vectors.load, &motion.internal_force);
+        let reaction = (0..system.unknowns()).map(|i| match system.fixed[i] {
+            true => {
+                let inside = inertia[i] + internal[i] + self.attempt.vectors.damping[i];
+                inside - load[i] - motion.contact_force[i] - motion.link_of(i)
+            }
+            false => 0.0,
+        });
+        let reaction = reaction.collect();
+        // the ledger of direct steps begins with resultants alone
+        let internal = match self.is_direct() {
+            true => Vec::new(),
+            false => internal.clone(),
+        };
+        let damping = match system.has_damping() || !self.is_direct() {
+            true => self.attempt.vectors.damping.clone(),
+            false => Vec::new(),
+        };
+        let links = match self.attempt.has_links() || !self.is_direct() {
+            true => (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
+            false => Vec::new(),
+        };
+        self.attempt.state.forces = StepForces {
+            load: load.clone(),
+            contact: motion.contact_force.clone(),
+            reaction,
+            inertia,
+            internal,
+            damping,
+            link: links,
+            spring: springs,
+        };
+    }
+
+    /// Lets go of the bodies that have waited for the dynamics.
+    fn let_go(&mut self) {
+        if let Some(released) = self.released.take() {
+            self.attempt.system = released;
+            self.parts.effective.forget();
+        }
+    }
+
+    /// At the end of the static stage bodies are given their velocities, and the balance begins anew.
+    pub(super) fn begin_stage(&mut self) -> Result<(), Error> {
+        let Some(preload) = self.attempt.system.nonlinear.preload else {
+            return Ok(());
+        };
+        if self.attempt.state.step >= preload.steps {
+            self.let_go();
+        }
+        let system = Arc::clone(&self.attempt.system);
+        if self.attempt.state.step != preload.steps
+            || self.attempt.state.motion.v.iter().any(|v| *v != 0.0)
+        {
+            return Ok(());
+        }
+        if self.attempt.state.time != preload.end {
+            return Ok(());
+        }
+        self.attempt
+            .state
+            .motion
+            .v
+            .clone_from(&system.initial_velocity);
+        self.attempt.state.records.begin_dynamics();
+        self.begin()?;
+        if self.attempt.has_links() {
+            self.begin_with_links()?;
+        }
+        self.keep_for_direct_steps();
+        Ok(())
+    }
+}
+
+impl Attempt {
     /// Energies of the assemblies begin with the dynamics.
-    fn start_assemblies(&mut self) {
+    pub(super) fn start_assemblies(&mut self) {
         self.state.assemblies = AssemblyEnergies::default();
         if self.is_static() {
             return;
@@ -333,160 +522,8 @@ impl Driver {
         self.state.records.small.begin_dynamics();
     }
 
-    /// Keeps what direct steps need of the start: loads that vary, and forces beside the internal ones.
-    fn keep_for_direct_steps(&mut self) {
-        if !self.is_direct() {
-            return;
-        }
-        let beside = match self.has_forces_beside() {
-            true => {
-                let (damping, motion) = (&self.vectors.damping, &self.state.motion);
-                let own = damping.iter().enumerate();
-                own.map(|(i, own)| own - motion.link_of(i)).collect()
-            }
-            false => Vec::new(),
-        };
-        let mut load = std::mem::take(&mut self.state.forces.load);
-        if self.system.nonlinear.loads.is_empty() {
-            load.clear();
-        }
-        self.state.forces = StepForces {
-            load,
-            damping: beside,
-            ..StepForces::default()
-        };
-        self.vectors.give_up_room();
-    }
-
-    /// The ledger at the start, of linear forces.
-    fn start_identity(&mut self, strain: f64) {
-        let system = Arc::clone(&self.system);
-        let energies = self.energies_at_the_start(strain);
-        let motion = &self.state.motion;
-        let super::Vectors {
-            inertia,
-            work,
-            place,
-            ..
-        } = &mut self.vectors;
-        system.mass.multiply(&motion.a, inertia);
-        work.copy_from_slice(&motion.internal_force);
-        reactions(&system, self.maps.first(), motion, motion, inertia, work);
-        place.copy_from_slice(&motion.u);
-        self.take_linear_springs_at_place();
-        let motion = &self.state.motion;
-        let super::Vectors { work, place, .. } = &mut self.vectors;
-        let supports = Resultant::of(&system, work);
-        for (i, force) in work.iter_mut().enumerate() {
-            *force += system.load[i] + motion.link_of(i);
-        }
-        system.mass.multiply(&motion.v, place);
-        let map = self.maps.first();
-        let apart = map.impulse != map.contact_impulse;
-        let contact = &self.state.motion.contact_force;
-        let held = |(&force, &fixed): (&f64, &bool)| if apart && fixed { -force } else { 0.0 };
-        let held: Vec<f64> = contact.iter().zip(&system.fixed).map(held).collect();
-        self.state.exchange = Exchange::start(&system, place, [work, &held]);
-        let held = Resultant::of(&system, &held);
-        let loads = Resultant::of(&system, &system.load);
-        let link = Resultant::of(&system, &self.state.motion.link_force);
-        let contact = Resultant::of(&system, &self.state.motion.contact_force);
-        let forces = OutsideForces {
-            loads,
-            contacts: contact,
-            supports,
-            held,
-            links: link,
-        };
-        let identity = self.identity.unwrap_or_default();
-        self.state.ledger = Ledger::start(&energies, &identity, forces);
-    }
-
-    /// The ledger at the start, where forces are not all linear.
-    fn start_works(&mut self, strain: f64, hardening: f64) {
-        let system = Arc::clone(&self.system);
-        // where the forces of the start were evaluated
-        let mut springs = Vec::new();
-        self.springs_at_place(false, &mut springs);
-        self.forces_at_the_start(springs);
-        self.start_exchange();
-        let identity = self.identity_of_ledger();
-        let [memory, lagged] = self.own_energies(End::Start, &identity, strain);
-        let motion = &self.state.motion;
-        let of = (strain, identity.inertia != 0.0, Some(&motion.u[..]));
-        let of_motion = energies(&system, motion, of, &mut self.vectors.work);
-        let energies = Energies {
-            memory,
-            lagged,
-            ..of_motion.of_zones(&self.maps, &system, motion)
-        };
-        let kept = &self.state.forces;
-        let at = |force: &[f64]| match kept.is_empty() {
-            true => Resultant::default(),
-            false => Resultant::at(&system, (&motion.frames, &[&motion.u]), force),
-        };
-        let forces = OutsideForces {
-            loads: at(&kept.load),
-            contacts: at(&kept.contact),
-            supports: at(&kept.reaction).plus(&at(&kept.spring).reversed()),
-            held: Resultant::default(),
-            links: at(&kept.link).plus(&at(&kept.damping).reversed()),
-        };
-        self.state.ledger = Ledger::start(&energies, &identity, forces);
-        self.state.ledger.store(hardening);
-    }
-
-    /// Forces that a step with a balance at both of its ends begins with, those of `springs` (N) also by themselves: none where a static stage begins out of balance.
-    fn forces_at_the_start(&mut self, springs: Vec<f64>) {
-        self.state.forces = StepForces::default();
-        let system = &*self.system;
-        let of_end = self.maps.all().iter().all(|map| map.impulse.old == 0.0);
-        if of_end && !self.is_static() {
-            return;
-        }
-        let motion = &self.state.motion;
-        let mut inertia = vec![0.0; system.unknowns()];
-        if !self.is_static() {
-            system.mass.multiply(&motion.a, &mut inertia);
-        } else if !self.is_balanced() {
-            return;
-        }
-        let (load, internal) = (&self.vectors.load, &motion.internal_force);
-        let reaction = (0..system.unknowns()).map(|i| match system.fixed[i] {
-            true => {
-                let inside = inertia[i] + internal[i] + self.vectors.damping[i];
-                inside - load[i] - motion.contact_force[i] - motion.link_of(i)
-            }
-            false => 0.0,
-        });
-        let reaction = reaction.collect();
-        // the ledger of direct steps begins with resultants alone
-        let internal = match self.is_direct() {
-            true => Vec::new(),
-            false => internal.clone(),
-        };
-        let damping = match system.has_damping() || !self.is_direct() {
-            true => self.vectors.damping.clone(),
-            false => Vec::new(),
-        };
-        let links = match self.has_links() || !self.is_direct() {
-            true => (0..system.unknowns()).map(|i| motion.link_of(i)).collect(),
-            false => Vec::new(),
-        };
-        self.state.forces = StepForces {
-            load: load.clone(),
-            contact: motion.contact_force.clone(),
-            reaction,
-            inertia,
-            internal,
-            damping,
-            link: links,
-            spring: springs,
-        };
-    }
-
     /// The exchange of momentum begins with the dynamics.
-    fn start_exchange(&mut self) {
+    pub(super) fn start_exchange(&mut self) {
         self.state.exchange = Exchange::default();
         if self.is_static() {
             return;
@@ -509,7 +546,7 @@ impl Driver {
     }
 
     /// Whether loads and internal forces of the state balance where no support does it.
-    fn is_balanced(&self) -> bool {
+    pub(super) fn is_balanced(&self) -> bool {
         let (load, internal) = (&self.vectors.load, &self.state.motion.internal_force);
         let (mut left, mut size) = (0.0, 0.0);
         for i in (0..load.len()).filter(|&i| !self.system.fixed[i]) {
@@ -521,37 +558,50 @@ impl Driver {
         let tolerance = self.system.nonlinear.iteration.tolerance;
         left <= tolerance * tolerance * size
     }
+}
 
-    /// Lets go of the bodies that have waited for the dynamics.
-    fn let_go(&mut self) {
-        if let Some(released) = self.released.take() {
-            self.system = released;
-            self.effective.forget();
+impl Parts {
+    /// The ledger at the start, of linear forces.
+    pub(super) fn start_identity(&mut self, attempt: &mut Attempt, strain: f64) {
+        let system = Arc::clone(&attempt.system);
+        let energies = self.energies_at_the_start(attempt, strain);
+        let motion = &attempt.state.motion;
+        let super::Vectors {
+            inertia,
+            work,
+            place,
+            ..
+        } = &mut attempt.vectors;
+        system.mass.multiply(&motion.a, inertia);
+        work.copy_from_slice(&motion.internal_force);
+        reactions(&system, attempt.maps.first(), motion, motion, inertia, work);
+        place.copy_from_slice(&motion.u);
+        attempt.take_linear_springs_at_place();
+        let motion = &attempt.state.motion;
+        let super::Vectors { work, place, .. } = &mut attempt.vectors;
+        let supports = Resultant::of(&system, work);
+        for (i, force) in work.iter_mut().enumerate() {
+            *force += system.load[i] + motion.link_of(i);
         }
-    }
-
-    /// At the end of the static stage bodies are given their velocities, and the balance begins anew.
-    pub(super) fn begin_stage(&mut self) -> Result<(), Error> {
-        let Some(preload) = self.system.nonlinear.preload else {
-            return Ok(());
+        system.mass.multiply(&motion.v, place);
+        let map = attempt.maps.first();
+        let apart = map.impulse != map.contact_impulse;
+        let contact = &attempt.state.motion.contact_force;
+        let held = |(&force, &fixed): (&f64, &bool)| if apart && fixed { -force } else { 0.0 };
+        let held: Vec<f64> = contact.iter().zip(&system.fixed).map(held).collect();
+        attempt.state.exchange = Exchange::start(&system, place, [work, &held]);
+        let held = Resultant::of(&system, &held);
+        let loads = Resultant::of(&system, &system.load);
+        let link = Resultant::of(&system, &attempt.state.motion.link_force);
+        let contact = Resultant::of(&system, &attempt.state.motion.contact_force);
+        let forces = OutsideForces {
+            loads,
+            contacts: contact,
+            supports,
+            held,
+            links: link,
         };
-        if self.state.step >= preload.steps {
-            self.let_go();
-        }
-        let system = Arc::clone(&self.system);
-        if self.state.step != preload.steps || self.state.motion.v.iter().any(|v| *v != 0.0) {
-            return Ok(());
-        }
-        if self.state.time != preload.end {
-            return Ok(());
-        }
-        self.state.motion.v.clone_from(&system.initial_velocity);
-        self.state.records.begin_dynamics();
-        self.begin()?;
-        if self.has_links() {
-            self.begin_with_links()?;
-        }
-        self.keep_for_direct_steps();
-        Ok(())
+        let identity = attempt.identity.unwrap_or_default();
+        attempt.state.ledger = Ledger::start(&energies, &identity, forces);
     }
 }

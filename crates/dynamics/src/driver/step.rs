@@ -6,6 +6,7 @@
 use carom_algebra::Interrupt;
 
 use super::Driver;
+use super::owners::Attempt;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
@@ -26,47 +27,51 @@ impl Driver {
         self.report.attempts = 0;
         self.report.samples.clear();
         self.report.notices = Notices::default();
-        match self.system.adaptive.is_some() && !self.is_static() {
+        match self.attempt.system.adaptive.is_some() && !self.attempt.is_static() {
             true => self.adapted_step(),
             false => self.step_in_parts(),
         }
     }
 
     fn adapted_step(&mut self) -> Result<(), Error> {
-        let system = std::sync::Arc::clone(&self.system);
+        let system = std::sync::Arc::clone(&self.attempt.system);
         let Some(rules) = &system.adaptive else {
             return Ok(());
         };
-        self.renew_stable(self.state.control.dt)?;
-        let control = self.control();
+        self.renew_stable(self.attempt.state.control.dt)?;
+        let control = self.attempt.control();
         let first = self.unplanned.take().unwrap_or(control.dt);
         let forced = self.is_forced();
         let (mut control, attempts) = adapt(self, (control, first), (rules, system.dt), forced)?;
         self.report.attempts = attempts;
-        self.report.notices.join(&self.notices);
-        let (step, time) = (self.state.step, self.state.time);
-        self.next.step = step + 1;
-        self.next.time = self.state.control.instant(step, time, self.dt);
-        control.take(Some(rules), (step, time, self.dt), system.dt);
-        self.accept(control, self.dt);
+        self.report.notices.join(&self.attempt.notices);
+        let (step, time) = (self.attempt.state.step, self.attempt.state.time);
+        self.attempt.next.step = step + 1;
+        self.attempt.next.time = self
+            .attempt
+            .state
+            .control
+            .instant(step, time, self.attempt.dt);
+        control.take(Some(rules), (step, time, self.attempt.dt), system.dt);
+        self.accept(control, self.attempt.dt);
         Ok(())
     }
 
     fn step_in_parts(&mut self) -> Result<(), Error> {
-        let (taken, first) = (self.state.step, self.state.time);
+        let (taken, first) = (self.attempt.state.step, self.attempt.state.time);
         let planned = self.unplanned.take();
-        self.renew_stable(planned.unwrap_or(self.state.control.taken))?;
+        self.renew_stable(planned.unwrap_or(self.attempt.state.control.taken))?;
         let size = self.size_of_step(planned)?;
-        let end = self.end_of_step(size);
+        let end = self.attempt.end_of_step(size);
         let whole = self.stable_level(end - first)?;
-        let mut control = self.control();
+        let mut control = self.attempt.control();
         let (mut done, mut level) = (0u64, whole);
         // a cause that an attempt has named says more than the end of the last one
         let mut unheld: Option<Error> = None;
         let mut indefinite = false;
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
-        let most = self.most_halvings();
+        let most = self.attempt.most_halvings();
         let parts = 1u64 << most;
         let mut forced = self.is_forced();
         while done < parts {
@@ -77,17 +82,17 @@ impl Driver {
             match self.attempt(dt, dt) {
                 Ok(()) if std::mem::take(&mut forced) => {}
                 Ok(()) => {
-                    self.report.notices.join(&self.notices);
+                    self.report.notices.join(&self.attempt.notices);
                     done += part;
-                    if part < parts && !self.is_static() {
-                        self.report.add_part(to, self.dt);
+                    if part < parts && !self.attempt.is_static() {
+                        self.report.add_part(to, self.attempt.dt);
                     }
                     if done < parts {
-                        start.get_or_insert_with(|| self.state.clone());
+                        start.get_or_insert_with(|| self.attempt.state.clone());
                         self.swap_states();
-                        self.state.time = to;
+                        self.attempt.state.time = to;
                         // parts of a step are of the same stage
-                        (self.state.step, self.state.control) = (taken, control);
+                        (self.attempt.state.step, self.attempt.state.control) = (taken, control);
                     }
                     while level > whole
                         && done.is_multiple_of(2 * part)
@@ -107,7 +112,7 @@ impl Driver {
                 }
                 Err(error) => {
                     if let Some(start) = start {
-                        self.state = start;
+                        self.attempt.state = start;
                         self.leave_direct();
                     }
                     if error.is_of_any_step() {
@@ -115,60 +120,37 @@ impl Driver {
                     }
                     indefinite |= is_indefinite(&error);
                     let error = unheld.unwrap_or(error);
-                    return Err(match indefinite && self.is_static() && !self.floats() {
-                        true => Error::Unstable {
-                            cause: Box::new(error),
+                    return Err(
+                        match indefinite
+                            && self.attempt.is_static()
+                            && !self.parts.floats(&self.attempt)
+                        {
+                            true => Error::Unstable {
+                                cause: Box::new(error),
+                            },
+                            false => error,
                         },
-                        false => error,
-                    });
+                    );
                 }
             }
         }
-        control.take(None, (taken, first, size), self.system.dt);
-        self.next.step = taken + 1;
-        self.next.time = end;
-        control.pace = self.pace.fresh;
+        control.take(None, (taken, first, size), self.attempt.system.dt);
+        self.attempt.next.step = taken + 1;
+        self.attempt.next.time = end;
+        control.pace = self.parts.pace.fresh;
         self.report.join_parts();
         self.accept(control, size);
         Ok(())
     }
 
-    /// What the control remembers: of the sizes of steps those of the dynamics alone, once these have begun.
-    fn control(&self) -> Control {
-        let mut control = self.state.control;
-        if self.state.step == self.system.static_steps() {
-            control.range = [0.0; 2];
-        }
-        control
-    }
-
-    /// Times that a step of fixed size may be halved: none where all of it is linear, whose failures have other causes.
-    fn most_halvings(&self) -> u32 {
-        match self.system.is_nonlinear() {
-            true => self.system.nonlinear.iteration.halvings,
-            false => 0,
-        }
-    }
-
     /// Makes the attempt, a step of `size` (s), the state.
     pub(super) fn accept(&mut self, control: Control, size: f64) {
-        self.next.control = control;
-        self.next.control.compression = self.stored.compression;
-        self.prepared = false;
+        self.attempt.next.control = control;
+        self.attempt.next.control.compression = self.parts.stored.compression;
+        self.parts.prepared = false;
         self.swap_states();
-        self.show_followed(size);
+        self.attempt.show_followed(size);
         self.tell(size);
-    }
-
-    /// The instant at which the next step of this size (s) ends, s: instants of equal steps are products, not sums.
-    fn end_of_step(&self, size: f64) -> f64 {
-        let step = self.state.step;
-        match self.system.nonlinear.preload {
-            Some(preload) if step < preload.steps => {
-                preload.end * ((step + 1) as f64 / preload.steps as f64)
-            }
-            _ => self.state.control.instant(step, self.state.time, size),
-        }
     }
 
     /// Size of the next step, s: the same bits for equal steps, so that a constant matrix is.
@@ -176,8 +158,8 @@ impl Driver {
     /// # Errors
     /// A critical step below the smallest part.
     fn size_of_step(&self, planned: Option<f64>) -> Result<f64, Error> {
-        match self.system.nonlinear.preload {
-            Some(preload) if self.is_static() => Ok(preload.end / preload.steps as f64),
+        match self.attempt.system.nonlinear.preload {
+            Some(preload) if self.attempt.is_static() => Ok(preload.end / preload.steps as f64),
             _ => planned.map_or_else(|| self.followed_step(), Ok),
         }
     }
@@ -194,8 +176,38 @@ impl Driver {
     }
 
     fn is_forced(&self) -> bool {
-        let next = self.state.step + 1;
+        let next = self.attempt.state.step + 1;
         self.forced.is_some_and(|every| next.is_multiple_of(every))
+    }
+}
+
+impl Attempt {
+    /// What the control remembers: of the sizes of steps those of the dynamics alone, once these have begun.
+    pub(super) fn control(&self) -> Control {
+        let mut control = self.state.control;
+        if self.state.step == self.system.static_steps() {
+            control.range = [0.0; 2];
+        }
+        control
+    }
+
+    /// Times that a step of fixed size may be halved: none where all of it is linear, whose failures have other causes.
+    pub(super) fn most_halvings(&self) -> u32 {
+        match self.system.is_nonlinear() {
+            true => self.system.nonlinear.iteration.halvings,
+            false => 0,
+        }
+    }
+
+    /// The instant at which the next step of this size (s) ends, s: instants of equal steps are products, not sums.
+    pub(super) fn end_of_step(&self, size: f64) -> f64 {
+        let step = self.state.step;
+        match self.system.nonlinear.preload {
+            Some(preload) if step < preload.steps => {
+                preload.end * ((step + 1) as f64 / preload.steps as f64)
+            }
+            _ => self.state.control.instant(step, self.state.time, size),
+        }
     }
 }
 
@@ -225,11 +237,11 @@ impl Attempts for Driver {
     }
 
     fn first_cut(&self, rules: &Adaptive, planned: f64) -> f64 {
-        Driver::first_cut(self, (rules, self.system.dt), planned)
+        Driver::first_cut(self, (rules, self.attempt.system.dt), planned)
     }
 
     fn grows(&self, fraction: f64) -> bool {
-        let ledger = &self.next.ledger;
+        let ledger = &self.attempt.next.ledger;
         ledger.free_energy() > fraction * ledger.largest_energy
     }
 
@@ -237,7 +249,7 @@ impl Attempts for Driver {
     fn withdraw(&mut self) {}
 
     fn instant(&self) -> (u64, f64) {
-        (self.state.step, self.state.time)
+        (self.attempt.state.step, self.attempt.state.time)
     }
 }
 
@@ -267,8 +279,8 @@ impl Stepper for Driver {
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {
-        let friction = self.failed_friction.as_ref();
-        let normal = self.failed.as_ref().map(FailedProblem::Normal);
+        let friction = self.contacts.failed_friction.as_ref();
+        let normal = self.contacts.failed.as_ref().map(FailedProblem::Normal);
         normal.or(friction.map(FailedProblem::Friction))
     }
 

@@ -6,7 +6,7 @@
 
 use carom_contact::law::Level;
 
-use super::Driver;
+use super::owners::{Attempt, Contacts};
 use crate::coulomb::Slip;
 use crate::report::ContactReport;
 use crate::step_map::{Row, StepMap};
@@ -19,29 +19,30 @@ pub(super) fn first_thought(friction: &[f64; 2]) -> Slip {
     }
 }
 
-impl Driver {
+impl Contacts {
     /// Whether a candidate has friction.
-    pub(super) fn rubs(&self) -> bool {
-        let mu =
-            |&point: &u32| self.system.contacts[self.system.contact_of(point as usize)].friction;
-        self.system.tangents() > 0 && self.candidates.iter().any(|point| mu(point) > 0.0)
+    pub(super) fn rubs(&self, attempt: &Attempt) -> bool {
+        let mu = |&point: &u32| {
+            attempt.system.contacts[attempt.system.contact_of(point as usize)].friction
+        };
+        attempt.system.tangents() > 0 && self.candidates.iter().any(|point| mu(point) > 0.0)
     }
 
     /// Points that carried friction are first thought to stick.
-    pub(super) fn guess_slips(&mut self) {
-        let points = self.system.points();
+    pub(super) fn guess_slips(&mut self, attempt: &mut Attempt) {
+        let points = attempt.system.points();
         self.slips.clear();
-        if self.system.tangents() == 0 {
+        if attempt.system.tangents() == 0 {
             return;
         }
-        let friction = &mut self.next.interface.friction;
+        let friction = &mut attempt.next.interface.friction;
         friction.resize(points, [0.0; 2]);
         self.slips.extend(friction.iter().map(first_thought));
     }
 
     /// Rows of all points, each with those of its tangents after it.
-    pub(super) fn stack(&mut self) {
-        let tangents = self.system.tangents();
+    pub(super) fn stack(&mut self, attempt: &Attempt) {
+        let tangents = attempt.system.tangents();
         if tangents == 0 {
             return;
         }
@@ -54,82 +55,78 @@ impl Driver {
         }
     }
 
-    /// Whether sliding is a velocity at the end of the step, or the way in it. In explicit steps no force changes the way, and
-    /// a point could not stick by it.
-    pub(super) fn slides_by_rate(&self) -> bool {
-        let system = &*self.system;
-        let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
-        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.contacts[k].friction > 0.0);
-        let way_is_known = self.maps.all().iter().all(|map| map.displacement.x == 0.0);
-        !self.maps.is_static() && (way_is_known || rubbing.all(of_rate))
-    }
-
     /// The times, from that at which the places of a contact are taken, over which its sliding is looked at, s.
-    pub(super) fn span(&self, contact: usize) -> [f64; 2] {
-        let after = self.paired_after(contact);
+    pub(super) fn span(&self, attempt: &Attempt, contact: usize) -> [f64; 2] {
+        let after = self.paired_after(attempt, contact);
         match self.by_rate {
-            true => [self.dt - after; 2],
-            false => [-after, self.dt - after],
+            true => [attempt.dt - after; 2],
+            false => [-after, attempt.dt - after],
         }
     }
 
     /// The row of a map whose product with T is the sliding quantity, and the time that turns a rate into it.
-    pub(super) fn sliding(&self) -> (impl Fn(&StepMap) -> Row + Copy + use<>, f64) {
+    pub(super) fn sliding(
+        &self,
+        attempt: &Attempt,
+    ) -> (impl Fn(&StepMap) -> Row + Copy + use<>, f64) {
         let by_rate = self.by_rate;
         let row = move |map: &StepMap| match by_rate {
             true => map.rate,
             false => map.displacement.since(&Row::START),
         };
-        (row, if by_rate { 1.0 } else { self.dt })
+        (row, if by_rate { 1.0 } else { attempt.dt })
     }
 
     /// Sliding quantity of a point along one tangent at the x of the iteration.
     pub(super) fn slid(
         &self,
+        attempt: &Attempt,
         point: usize,
         tangent: usize,
         (row, time): (impl Fn(&StepMap) -> Row, f64),
     ) -> f64 {
         let rows = &self.pairing.tangents[tangent];
-        let xc = [&self.vectors.x[..], &self.vectors.push];
-        let along = self.maps.on((rows, point), row, &self.state.motion, xc);
+        let xc = [&attempt.vectors.x[..], &attempt.vectors.push];
+        let along = attempt
+            .maps
+            .on((rows, point), row, &attempt.state.motion, xc);
         along + time * rows.rate(point)
     }
 
     /// Adds Tᵀ t to the nodal contact forces.
-    pub(super) fn spread_friction(&mut self) {
-        for point in self.active.within(0..self.system.points()) {
-            let Some(t) = self.next.interface.friction.get(point) else {
+    pub(super) fn spread_friction(&self, attempt: &mut Attempt) {
+        for point in self.active.within(0..attempt.system.points()) {
+            let Some(t) = attempt.next.interface.friction.get(point) else {
                 return;
             };
             for (rows, &t) in self.pairing.tangents.iter().zip(t) {
                 if t != 0.0 {
-                    rows.add_force(point, t, &mut self.vectors.contact);
+                    rows.add_force(point, t, &mut attempt.vectors.contact);
                 }
             }
         }
     }
 
     /// How far a point that sticks has slid at the x of the iteration, m.
-    pub(super) fn slip_defect(&self, point: usize) -> f64 {
+    pub(super) fn slip_defect(&self, attempt: &Attempt, point: usize) -> f64 {
         if self.slips.get(point) != Some(&Slip::Stick) {
             return 0.0;
         }
-        let (row, time) = self.sliding();
-        let slid = |k: usize| self.slid(point, k, (row, time)).powi(2);
-        let slid: f64 = (0..self.system.tangents()).map(slid).sum();
-        slid.sqrt() * self.dt / time
+        let (row, time) = self.sliding(attempt);
+        let slid = |k: usize| self.slid(attempt, point, k, (row, time)).powi(2);
+        let slid: f64 = (0..attempt.system.tangents()).map(slid).sum();
+        slid.sqrt() * attempt.dt / time
     }
 
     /// How far the friction of a point is from what its status allows, over `largest`, the largest force of all points:
     /// |t| - μ P of a point that sticks, | |t| - μ P | of one that slips, over what their equations may leave, 2 + μ.
     /// Forces of one solve obey this to its tolerance, a mixture of points that stick and slip need not.
-    pub(super) fn cone_defect(&self, point: usize, largest: f64) -> f64 {
-        let interface = &self.next.interface;
+    pub(super) fn cone_defect(&self, attempt: &Attempt, point: usize, largest: f64) -> f64 {
+        let interface = &attempt.next.interface;
         let (Some(t), Some(slip)) = (interface.friction.get(point), self.slips.get(point)) else {
             return 0.0;
         };
-        let mu = self.system.contacts[self.system.contact_of(point)].friction;
+        let mu = attempt.system.contacts[attempt.system.contact_of(point)].friction;
         let beyond = t[0].hypot(t[1]) - mu * interface.force[point].max(0.0);
         let defect = match slip {
             Slip::Slip => beyond.abs(),
@@ -143,45 +140,55 @@ impl Driver {
     }
 
     /// Way that a point slides along one tangent in the step that was taken, m.
-    fn way(&self, point: usize, tangent: usize) -> f64 {
+    pub(super) fn way(&self, attempt: &Attempt, point: usize, tangent: usize) -> f64 {
         let rows = &self.pairing.tangents[tangent];
         let [old, new] =
-            [&self.state.motion.u, &self.next.motion.u].map(|u| rows.product(point, u));
-        new - old + self.dt * rows.rate(point)
+            [&attempt.state.motion.u, &attempt.next.motion.u].map(|u| rows.product(point, u));
+        new - old + attempt.dt * rows.rate(point)
     }
 
     /// Work in J of the friction forces of the step, old and new with these weights by zone, on the way that their points slide
     /// over the primary.
-    pub(super) fn friction_work(&self, weights: &[[f64; 2]]) -> f64 {
-        let contacts = 0..self.system.contacts.len();
-        let of = |k| self.friction_work_of(k, weights[self.system.zone_of(k)]);
+    pub(super) fn friction_work(&self, attempt: &Attempt, weights: &[[f64; 2]]) -> f64 {
+        let contacts = 0..attempt.system.contacts.len();
+        let of = |k| self.friction_work_of(attempt, k, weights[attempt.system.zone_of(k)]);
         contacts.map(of).sum()
     }
 
     /// The same of one contact, with its weights.
-    pub(super) fn friction_work_of(&self, contact: usize, weights: [f64; 2]) -> f64 {
-        let (old, new) = (&self.state.interface, &self.next.interface);
+    pub(super) fn friction_work_of(
+        &self,
+        attempt: &Attempt,
+        contact: usize,
+        weights: [f64; 2],
+    ) -> f64 {
+        let (old, new) = (&attempt.state.interface, &attempt.next.interface);
         let mut work = 0.0;
-        for point in self.active.within(self.system.points_of(contact)) {
+        for point in self.active.within(attempt.system.points_of(contact)) {
             let Some(t) = new.friction.get(point) else {
                 break;
             };
             let before = old.friction.get(point).copied().unwrap_or_default();
-            for k in 0..self.system.tangents() {
+            for k in 0..attempt.system.tangents() {
                 let mean = weights[0] * before[k] + weights[1] * t[k];
                 if mean != 0.0 {
-                    work += mean * self.way(point, k);
+                    work += mean * self.way(attempt, point, k);
                 }
             }
         }
-        self.contact_factor() * work
+        attempt.contact_factor() * work
     }
 
     /// Writes the friction of a contact into its report, and adds it to the resultant.
-    pub(super) fn report_friction(&self, contact: usize, report: &mut ContactReport) {
+    pub(super) fn report_friction(
+        &self,
+        attempt: &Attempt,
+        contact: usize,
+        report: &mut ContactReport,
+    ) {
         let mut sum = [0.0; 3];
-        for point in self.active.within(self.system.points_of(contact)) {
-            let Some(t) = self.next.interface.friction.get(point) else {
+        for point in self.active.within(attempt.system.points_of(contact)) {
+            let Some(t) = attempt.next.interface.friction.get(point) else {
                 return;
             };
             for (rows, t) in self
@@ -189,7 +196,7 @@ impl Driver {
                 .tangents
                 .iter()
                 .zip(t)
-                .take(self.system.tangents())
+                .take(attempt.system.tangents())
             {
                 for (sum, direction) in sum.iter_mut().zip(rows.resultant(point)) {
                     *sum += t * direction;
@@ -202,5 +209,17 @@ impl Driver {
         for (resultant, f) in report.resultant.iter_mut().zip(sum) {
             *resultant += f;
         }
+    }
+}
+
+impl Attempt {
+    /// Whether sliding is a velocity at the end of the step, or the way in it. In explicit steps no force changes the way, and
+    /// a point could not stick by it.
+    pub(super) fn slides_by_rate(&self) -> bool {
+        let system = &*self.system;
+        let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
+        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.contacts[k].friction > 0.0);
+        let way_is_known = self.maps.all().iter().all(|map| map.displacement.x == 0.0);
+        !self.maps.is_static() && (way_is_known || rubbing.all(of_rate))
     }
 }

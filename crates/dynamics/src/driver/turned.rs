@@ -2,40 +2,40 @@
 
 use std::sync::Arc;
 
-use super::Driver;
+use super::owners::{Attempt, Links};
 use crate::system::{LinkRow, Turned};
 
-impl Driver {
+impl Links {
     /// Makes the rows those of the configuration of the internal forces, `place`, of several schemes that of the end of the step, and the forces of the multipliers those
     /// of these rows.
-    pub(super) fn turn_rows(&mut self) {
-        let system = &self.system;
+    pub(super) fn turn_rows(&mut self, attempt: &Attempt) {
+        let system = &attempt.system;
         if system.turning_rows.is_empty() {
             return;
         }
-        let motion = &self.state.motion;
-        let end = (system.schemes.len() > 1).then(|| self.end(&self.vectors.x));
+        let motion = &attempt.state.motion;
+        let end = (system.schemes.len() > 1).then(|| attempt.end(&attempt.vectors.x));
         let at = Turned {
             frames: &motion.frames,
-            u: end.as_ref().unwrap_or(&self.vectors.place),
-            from: (!self.maps.is_static() && system.scheme.get().is_between())
+            u: end.as_ref().unwrap_or(&attempt.vectors.place),
+            from: (!attempt.maps.is_static() && system.scheme.get().is_between())
                 .then_some(&motion.u[..]),
         };
         let rows: &mut Vec<LinkRow> = Arc::make_mut(&mut self.rows);
         system
             .turning_rows
             .coefficients(&system.unknowns, &at, rows);
-        self.set_links();
+        self.set_links(attempt);
     }
 
     /// The rows at the start of the step, where they turn and several schemes weigh multipliers in time: the force of a scheme that balances in the step is then the mean of the
     /// forces at both ends, as that of the other, and the momentum of both sides changes alike.
-    pub(super) fn rows_before(&self) -> Option<Vec<LinkRow>> {
-        let system = &self.system;
-        if system.turning_rows.is_empty() || system.schemes.len() < 2 || self.maps.is_static() {
+    pub(super) fn rows_before(&self, attempt: &Attempt) -> Option<Vec<LinkRow>> {
+        let system = &attempt.system;
+        if system.turning_rows.is_empty() || system.schemes.len() < 2 || attempt.maps.is_static() {
             return None;
         }
-        let motion = &self.state.motion;
+        let motion = &attempt.state.motion;
         let at = Turned {
             frames: &motion.frames,
             u: &motion.u,
@@ -49,13 +49,13 @@ impl Driver {
     }
 
     /// Makes the rows those of the state.
-    pub(super) fn turn_rows_at_start(&mut self) {
+    pub(super) fn turn_rows_at_start(&mut self, attempt: &Attempt) {
         let at = Turned {
-            frames: &self.state.motion.frames,
-            u: &self.state.motion.u,
+            frames: &attempt.state.motion.frames,
+            u: &attempt.state.motion.u,
             from: None,
         };
-        let system = &self.system;
+        let system = &attempt.system;
         if !system.turning_rows.is_empty() {
             let rows: &mut Vec<LinkRow> = Arc::make_mut(&mut self.rows);
             system
@@ -64,6 +64,24 @@ impl Driver {
         }
     }
 
+    /// The largest of what rows that turn miss, in tolerances of a length.
+    pub(super) fn worst_row(&self, attempt: &Attempt) -> f64 {
+        let size = |row: usize| -> f64 {
+            let terms = self.rows[row].iter();
+            let moved = terms.filter(|(unknown, _)| {
+                let node = attempt.system.unknowns.node(*unknown as usize);
+                let own = attempt.system.unknowns.translations_of(node);
+                own.contains(&(*unknown as usize))
+            });
+            moved.map(|(_, c)| c.abs()).sum()
+        };
+        let missed = attempt.missed(&attempt.vectors.x).into_iter();
+        let lengths = missed.map(|(row, h)| h.abs() / size(row));
+        lengths.fold(0.0, f64::max) / attempt.system.tolerance
+    }
+}
+
+impl Attempt {
     /// What of the second derivatives of the rows by time the velocities of the state give.
     pub(super) fn centripetal_rows(&self) -> Vec<(usize, f64)> {
         let motion = &self.state.motion;
@@ -84,24 +102,8 @@ impl Driver {
         self.missed(&all.map(|(x, jump)| x + jump).collect::<Vec<f64>>())
     }
 
-    /// The largest of what rows that turn miss, in tolerances of a length.
-    pub(super) fn worst_row(&self) -> f64 {
-        let size = |row: usize| -> f64 {
-            let terms = self.rows[row].iter();
-            let moved = terms.filter(|(unknown, _)| {
-                let node = self.system.unknowns.node(*unknown as usize);
-                let own = self.system.unknowns.translations_of(node);
-                own.contains(&(*unknown as usize))
-            });
-            moved.map(|(_, c)| c.abs()).sum()
-        };
-        let missed = self.missed(&self.vectors.x).into_iter();
-        let lengths = missed.map(|(row, h)| h.abs() / size(row));
-        lengths.fold(0.0, f64::max) / self.system.tolerance
-    }
-
     /// The displacement at the end of the step.
-    fn end(&self, x: &[f64]) -> Vec<f64> {
+    pub(super) fn end(&self, x: &[f64]) -> Vec<f64> {
         let mut end = vec![0.0; x.len()];
         let xc = [x, &self.vectors.push];
         self.maps
@@ -109,7 +111,7 @@ impl Driver {
         end
     }
 
-    fn missed(&self, x: &[f64]) -> Vec<(usize, f64)> {
+    pub(super) fn missed(&self, x: &[f64]) -> Vec<(usize, f64)> {
         let system = &self.system;
         if system.turning_rows.is_empty() {
             return Vec::new();
