@@ -123,7 +123,7 @@ fn close(built: &mut Built) -> Option<(f64, Vec<Vec<f64>>)> {
     let mut first = f64::INFINITY;
     let mut before = Vec::with_capacity(system.contacts.len());
     for number in 0..system.contacts.len() {
-        let start = &system.initial_displacement;
+        let start = &system.initial.displacement;
         let found = approach(system, &accelerations, (number, start));
         let contact = &mut system.contacts[number].contact;
         before.push(contact.offsets.clone());

@@ -47,7 +47,7 @@ pub(crate) fn facts_with(built: &Built, words: impl FnOnce(&[Approach]) -> Vec<F
             system.points()
         ),
     )];
-    let (accelerations, start) = (accelerations(system), &system.initial_displacement);
+    let (accelerations, start) = (accelerations(system), &system.initial.displacement);
     let contacts = 0..system.contacts.len();
     let approaches = contacts.map(|k| approach(system, &accelerations, (k, start)));
     let approaches: Vec<Approach> = approaches.collect();
@@ -402,7 +402,7 @@ pub(crate) fn approach(
     accelerations: &[f64],
     (contact, u): (usize, &[f64]),
 ) -> Approach {
-    let places = system.places(0.0, u, &system.initial_frames);
+    let places = system.places(0.0, u, &system.initial.frames);
     let mut rows = Rows::default();
     rows.clear();
     system.contacts[contact].pair(&places, &mut Search::default(), &mut rows);
@@ -418,7 +418,7 @@ pub(crate) fn approach(
         if !gap.is_finite() {
             continue;
         }
-        let speed = closing(&rows, point, &system.initial_velocity, rows.rate(point));
+        let speed = closing(&rows, point, &system.initial.velocity, rows.rate(point));
         let pull = closing(&rows, point, accelerations, 0.0);
         approach.speed = approach.speed.max(speed);
         approach.impact = approach.impact.min(first_closing(gap, speed, pull));

@@ -250,8 +250,8 @@ fn pays(
 /// Contact points on a part, or on any, that close within the steps which a matrix is taken to serve, if all moves on as it does at first. A
 /// point that loads alone bring to its contact is not among them.
 fn closing(system: &System, part: Option<&Range<usize>>) -> usize {
-    let (u, v) = (&system.initial_displacement, &system.initial_velocity);
-    let places = system.places(0.0, u, &system.initial_frames);
+    let (u, v) = (&system.initial.displacement, &system.initial.velocity);
+    let places = system.places(0.0, u, &system.initial.frames);
     let mut pairing = Pairing::default();
     pairing.clear();
     for contact in &system.contacts {

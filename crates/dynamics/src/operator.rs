@@ -520,7 +520,7 @@ pub(crate) fn assembled_at(
 /// Adds the unknowns of each row of constraints inside `range`, counted from its start: the pattern that [`add_rows`] needs. Nothing without a static
 /// stage.
 pub(crate) fn push_rows(system: &System, range: &Range<usize>, cliques: &mut Cliques) {
-    for row in rows_within((system, &system.link_rows), range) {
+    for row in rows_within((system, &system.links.rows), range) {
         let own: Vec<u32> = row.iter().map(|(i, _)| i - range.start as u32).collect();
         cliques.push(&own);
     }

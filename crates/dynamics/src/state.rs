@@ -59,21 +59,21 @@ pub struct Links {
 impl Links {
     /// Whether they are of this system; none where it has none.
     fn are_of(&self, system: &System) -> bool {
-        let (rows, schemes) = (system.link_rows.len(), system.schemes.len());
+        let (rows, schemes) = (system.links.rows.len(), system.schemes.len());
         let is_none = rows == 0 && self.mixed.is_empty();
         self.multipliers.len() == rows
             && (is_none || self.mixed.len() == schemes)
             && self.mixed.iter().all(|mixed| mixed.len() == rows)
-            && (self.works.len() == system.links.len() || rows == 0 && self.works.is_empty())
+            && (self.works.len() == system.links.named.len() || rows == 0 && self.works.is_empty())
     }
 
     /// Without forces and works.
     pub(crate) fn at_rest(system: &System) -> Links {
-        let rows = system.link_rows.len();
+        let rows = system.links.rows.len();
         Links {
             multipliers: vec![0.0; rows],
             mixed: vec![vec![0.0; rows]; system.schemes.len()],
-            works: vec![[0.0; 2]; system.links.len()],
+            works: vec![[0.0; 2]; system.links.named.len()],
         }
     }
 }
@@ -257,7 +257,7 @@ impl State {
         ];
         vectors.iter().all(|vector| vector.len() == n)
             && [0, n].contains(&motion.link_force.len())
-            && motion.frames.len() == system.initial_frames.len()
+            && motion.frames.len() == system.initial.frames.len()
             && motion.memory.len() == remembered
             && motion.history.len() == system.start_histories().len()
     }
@@ -278,7 +278,7 @@ pub fn empty_state(system: &System) -> State {
             u: zeros(),
             v: zeros(),
             a: zeros(),
-            frames: system.initial_frames.clone(),
+            frames: system.initial.frames.clone(),
             memory: match remembers {
                 true => zeros(),
                 false => Vec::new(),

@@ -237,7 +237,7 @@ impl Watched {
     /// Pairs the points at their reference places, with an obstacle where it is at a time (s).
     fn pair_initially(&mut self, system: &System, number: usize, (time, still): (f64, &[f64])) {
         self.initial.clear();
-        let places = system.places(time, still, &system.initial_frames);
+        let places = system.places(time, still, &system.initial.frames);
         let contact = &system.contacts[number];
         contact.pair(&places, &mut self.search, &mut self.initial);
     }

@@ -209,7 +209,7 @@ impl ModeSet<'_> {
     fn displacements(&self, part: &Modes, mode: usize) -> Vec<[f64; 3]> {
         let motion = Motion {
             u: part.shape(mode, self.system.unknowns()),
-            frames: self.system.initial_frames.clone(),
+            frames: self.system.initial.frames.clone(),
             ..Motion::default()
         };
         let nodes = 0..self.system.x.len() as u32;
@@ -277,7 +277,7 @@ impl ModeSet<'_> {
             let mut u = part.shape(*mode, system.unknowns());
             let scale = AMPLITUDE * size(system) / largest;
             u.iter_mut().for_each(|u| *u *= scale);
-            let places = system.places(0.0, &u, &system.initial_frames);
+            let places = system.places(0.0, &u, &system.initial.frames);
             let value = |nodes: &[u32], _| {
                 let of_node = |node: &u32| norm(&values[*node as usize]) / largest;
                 nodes.iter().map(of_node).sum::<f64>() / nodes.len() as f64

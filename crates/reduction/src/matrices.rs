@@ -43,7 +43,7 @@ impl Matrices {
                         u: &rest,
                         v: &rest,
                         from: None,
-                        frames: &system.initial_frames,
+                        frames: &system.initial.frames,
                         dt: system.dt,
                         old: system.history(number, &histories),
                     };
@@ -80,7 +80,7 @@ pub(crate) fn groups(system: &System) -> Vec<Group> {
             .map(|(dof, _)| system.part_of(*dof as usize))
             .collect()
     };
-    for row in system.link_rows.iter() {
+    for row in system.links.rows.iter() {
         let parts = part_of_row(row);
         for pair in parts.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|part| root(&mut leader, part));
@@ -107,7 +107,7 @@ pub(crate) fn groups(system: &System) -> Vec<Group> {
     for (body, part) in system.part_of_body.iter().enumerate() {
         groups[place[roots[*part]]].bodies.push(body);
     }
-    for (number, row) in system.link_rows.iter().enumerate() {
+    for (number, row) in system.links.rows.iter().enumerate() {
         if let Some(part) = part_of_row(row).first() {
             groups[place[roots[*part]]].rows.push(number);
         }
@@ -129,7 +129,7 @@ impl Group {
             place[unknown] = own as u32;
         }
         let row = |number: &usize| {
-            let terms = system.link_rows[*number].iter();
+            let terms = system.links.rows[*number].iter();
             let (dofs, coefficients) = terms.map(|(dof, c)| (place[*dof as usize], *c)).unzip();
             SparseRow { dofs, coefficients }
         };

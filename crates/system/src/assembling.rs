@@ -26,7 +26,7 @@ impl Assemblies {
         }
         system
             .mass
-            .multiply(&system.initial_velocity, &mut momentum);
+            .multiply(&system.initial.velocity, &mut momentum);
         for assembly in &mut assemblies.all {
             let mut sum = [0.0; 3];
             for unknown in assembly
@@ -73,7 +73,7 @@ fn joined(system: &System) -> Assemblies {
     for contact in &system.contacts {
         join(&mut contact.bodies.iter().map(|&body| system.part_of_body[body]));
     }
-    for row in system.link_rows.iter() {
+    for row in system.links.rows.iter() {
         join(
             &mut row
                 .iter()

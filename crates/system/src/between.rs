@@ -44,7 +44,7 @@ impl System {
     /// Refuses links that the step cannot solve together with the contacts.
     fn check_links(&self, maps: &Maps) -> Result<(), Error> {
         let mut linked = vec![false; self.parts.len()];
-        for &(dof, _) in self.link_rows.iter().flatten() {
+        for &(dof, _) in self.links.rows.iter().flatten() {
             linked[self.part_of(dof as usize)] = true;
         }
         let one = |row: &LinkRow| {
@@ -52,7 +52,7 @@ impl System {
             let first = parts.next();
             parts.all(|part| Some(part) == first)
         };
-        if self.nonlinear.preload.is_some() && !self.link_rows.iter().all(one) {
+        if self.nonlinear.preload.is_some() && !self.links.rows.iter().all(one) {
             return Err(Error::Nonlinear {
                 what: Refused::StaticStage,
                 why: "it joins bodies of one scheme only, by constraints; leave out the stage or the links",

@@ -16,19 +16,18 @@ use crate::error::Error;
 use crate::extents::{NodeMasses, diagonals};
 use crate::initial::{settle, slack};
 use crate::levers::Levers;
-use crate::link_row::LinkRow;
+use crate::links::Links;
 use crate::mass::Mass;
 use crate::massless::redistribute;
 use crate::middles::{Carried, add_middles};
 use crate::modal::NumberedModal;
-use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete, ModelLink};
+use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
 use crate::numbered::NumberedNonlinear;
 use crate::numbering::{Numbering, numbering};
 use crate::reported::ReportedSupport;
 use crate::rigid::{add_centres, hold_axisymmetric, spin, unknowns};
-use crate::system::{System, part_of};
+use crate::system::{InitialMotion, System, part_of};
 use crate::tolerances::tolerance;
-use crate::turning::TurningRows;
 
 impl System {
     /// Numbers the nodes by connected part and builds bodies, masses and contacts.
@@ -211,12 +210,7 @@ impl System {
         });
         let part_of_body: Vec<usize> = part_of_body.collect();
         let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
-        let Links {
-            named: links,
-            rows: link_rows,
-            inner_terms,
-            turning: turning_rows,
-        } = links(&model, &number, (&unknowns, &x))?;
+        let links = Links::of(&model, &number, (&unknowns, &x))?;
         let undeformed = undeformed(&bodies, &part_of_body, parts.len());
         let of_parts: Vec<(Range<usize>, bool)> = parts
             .iter()
@@ -279,18 +273,17 @@ impl System {
             schemes,
             zone_of_body,
             links,
-            link_rows: Arc::new(link_rows),
-            turning_rows,
-            inner_terms,
             spans,
             dt: model.dt,
             adaptive: model.adaptive,
             critical_fraction: model.critical_fraction,
             nonlinear,
             x,
-            initial_frames,
-            initial_displacement,
-            initial_velocity,
+            initial: InitialMotion {
+                displacement: initial_displacement,
+                velocity: initial_velocity,
+                frames: initial_frames,
+            },
             staged: None,
             mesh: Arc::new(model.mesh),
         };
@@ -349,78 +342,6 @@ fn nearest_corner(x: &[[f64; 3]]) -> [f64; 3] {
         });
         0.0_f64.min(high).max(low)
     })
-}
-
-/// The rows of links and constraints.
-#[derive(Default)]
-struct Links {
-    /// Name and range of the rows of each.
-    named: Vec<(String, Range<usize>)>,
-    rows: Vec<LinkRow>,
-    /// Number of terms on the inner side of each row.
-    inner_terms: Vec<usize>,
-    turning: TurningRows,
-}
-
-/// Numbers the rows of each link and of each constraint.
-///
-/// # Errors
-/// A constraint of an unknown that a node does not have; rows that turn without those of the same node.
-fn links(
-    model: &Model,
-    number: &[u32],
-    (unknowns, x): (&Unknowns, &[[f64; 3]]),
-) -> Result<Links, Error> {
-    let mut links = Links::default();
-    for link in &model.links {
-        let first = links.rows.len();
-        let turning = &mut links.turning;
-        match turning.add(link, (number, unknowns, x), &mut links.rows)? {
-            Some(inner) => links.inner_terms.extend(inner),
-            None => links.add_fixed(link, number, unknowns),
-        }
-        let range = first..links.rows.len();
-        links.named.push((link.name.clone(), range));
-    }
-    for constraint in &model.constraints {
-        let first = links.rows.len();
-        for given in &constraint.rows {
-            let mut row: LinkRow = Vec::new();
-            for &(node, kind, c) in given {
-                let own = number[node as usize];
-                let found = (own != u32::MAX).then(|| unknowns.find(own, kind));
-                let unknown = found.flatten().ok_or_else(|| Error::NoSuchUnknown {
-                    constraint: constraint.name.clone(),
-                    node,
-                })?;
-                row.push((unknown as u32, c));
-            }
-            // what a constraint holds is on one side
-            links.inner_terms.push(row.len());
-            links.rows.push(row);
-        }
-        let range = first..links.rows.len();
-        links.named.push((constraint.name.clone(), range));
-    }
-    Ok(links)
-}
-
-impl Links {
-    /// Adds the rows of a link as they are.
-    fn add_fixed(&mut self, link: &ModelLink, number: &[u32], unknowns: &Unknowns) {
-        for row in &link.rows {
-            let term = |sign: f64| {
-                move |term: &carom_arlequin::Term| {
-                    let first = unknowns.first(number[term.node as usize]) as u32;
-                    (first + term.component, sign * term.coefficient)
-                }
-            };
-            let inner = row.inner.iter().map(term(1.0));
-            let all = inner.chain(row.outer.iter().map(term(-1.0))).collect();
-            self.rows.push(all);
-            self.inner_terms.push(row.inner.len());
-        }
-    }
 }
 
 /// The schemes, each once, the number of each body's, and the unknowns by scheme.

@@ -40,8 +40,8 @@ impl Maps {
                 .collect(),
             factors: vec![0.0; system.schemes.len()],
             weights: vec![[0.0, 1.0]; system.schemes.len()],
-            linked: !system.link_rows.is_empty(),
-            turning: !system.turning_rows.is_empty(),
+            linked: !system.links.rows.is_empty(),
+            turning: !system.links.turning.is_empty(),
             spans: system.spans.clone(),
         };
         maps.resize(&system.schemes, (dt, next));

@@ -14,7 +14,7 @@ impl System {
         let law = |of: fn(&Law) -> bool| self.contacts.iter().any(|contact| of(&contact.law));
         let impulses = (0..self.contacts.len()).any(|contact| self.has_impulses(contact));
         let reasons = [
-            (!self.link_rows.is_empty(), "links, ties and constraints"),
+            (!self.links.rows.is_empty(), "links, ties and constraints"),
             (!self.modal.is_empty(), "damping of modes"),
             (self.nonlinear.preload.is_some(), "a static stage"),
             (self.schemes.len() > 1, "zones"),

@@ -14,14 +14,14 @@ use crate::build::Nodes;
 use crate::contact_pair::ContactPair;
 use crate::error::Error;
 use crate::levers::{Lever, Levers};
+use crate::links::Links;
 use crate::mass::Mass;
 use crate::model::{Model, ModelTarget};
 use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::numbered_loads::{NumberedForce, NumberedLoad};
 use crate::reported::{HeldUnknown, ReportedSupport};
-use crate::system::System;
-use crate::turning::TurningRows;
+use crate::system::{InitialMotion, System};
 
 /// Nodes of the mesh that elements of a rank have, and those of all contacts; and the first face of each load, whose body gives its thickness.
 fn near(model: &Model, (cells, ranks): (&[Vec<ElementId>], &[Vec<u32>]), rank: u32) -> Vec<bool> {
@@ -260,10 +260,7 @@ impl System {
             scheme: self.scheme,
             schemes: self.schemes.clone(),
             zone_of_body: self.zone_of_body.clone(),
-            links: Vec::new(),
-            link_rows: Arc::default(),
-            turning_rows: TurningRows::default(),
-            inner_terms: Vec::new(),
+            links: Links::default(),
             spans: self
                 .spans
                 .iter()
@@ -272,9 +269,11 @@ impl System {
             dt: self.dt,
             adaptive: self.adaptive,
             critical_fraction: self.critical_fraction,
-            initial_frames: Vec::new(),
-            initial_displacement: to.pick(&self.initial_displacement),
-            initial_velocity: to.pick(&self.initial_velocity),
+            initial: InitialMotion {
+                displacement: to.pick(&self.initial.displacement),
+                velocity: to.pick(&self.initial.velocity),
+                frames: Vec::new(),
+            },
             staged: None,
             unknowns,
         }

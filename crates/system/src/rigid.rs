@@ -343,10 +343,10 @@ impl System {
 
     /// Refuses what rows that turn do not take.
     fn check_turning_rows(&self) -> Result<(), Error> {
-        let Some(row) = self.turning_rows.first() else {
+        let Some(row) = self.links.turning.first() else {
             return Ok(());
         };
-        let mut links = self.links.iter();
+        let mut links = self.links.named.iter();
         let link = links.find(|(_, rows)| rows.contains(&row));
         let refuse = |why| {
             let name = link.map_or(String::new(), |(name, _)| name.clone());
@@ -382,7 +382,7 @@ impl System {
                  generalised-alpha, and laws without projection",
             );
         }
-        let linked = self.link_rows.iter().flatten();
+        let linked = self.links.rows.iter().flatten();
         let mut parts = linked.map(|(unknown, _)| self.part_of(*unknown as usize));
         match parts.any(|part| self.undeformed[part]) {
             true => {

@@ -145,7 +145,7 @@ impl System {
         }
         let mut rows = Rows::default();
         rows.clear();
-        let places = self.places(0.0, &self.initial_displacement, &self.initial_frames);
+        let places = self.places(0.0, &self.initial.displacement, &self.initial.frames);
         contact.pair(&places, &mut Search::default(), &mut rows);
         let lightest = self
             .mass

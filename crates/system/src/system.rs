@@ -14,12 +14,11 @@ use crate::adaptive::Adaptive;
 use crate::assemblies::Assemblies;
 use crate::contact_pair::ContactPair;
 use crate::levers::Levers;
-use crate::link_row::LinkRow;
+use crate::links::Links;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
 use crate::numbered::NumberedNonlinear;
 use crate::reported::ReportedSupport;
-use crate::turning::TurningRows;
 
 /// The immutable side of a run.
 #[derive(Debug)]
@@ -96,14 +95,8 @@ pub struct System {
     pub schemes: Vec<Scheme>,
     /// Which of them each body has.
     pub zone_of_body: Vec<usize>,
-    /// Name and range of the rows of each link.
-    pub links: Vec<(String, Range<usize>)>,
-    /// The rows of all links, of both sides, those of the inner side first.
-    pub link_rows: Arc<Vec<LinkRow>>,
-    /// Those of them that turn with their nodes; their coefficients in [`System::link_rows`] are those of the reference position.
-    pub turning_rows: TurningRows,
-    /// Number of terms on the inner side of each row.
-    pub inner_terms: Vec<usize>,
+    /// Links and constraints.
+    pub links: Links,
     /// Unknowns that follow each other and have one scheme, and its number; ascending.
     pub spans: Vec<(Range<usize>, usize)>,
     /// Step, s; the largest of an adaptive step.
@@ -115,14 +108,21 @@ pub struct System {
     pub critical_fraction: Option<f64>,
     /// Loads and motions in time, damping, the static stage, and the rules of the iterations.
     pub nonlinear: NumberedNonlinear,
-    /// Initial rotations of the nodes that have any.
-    pub initial_frames: Vec<Rotation>,
-    /// Initial displacement, m.
-    pub initial_displacement: Vec<f64>,
-    /// Initial velocity, m/s; zero where an unknown is held.
-    pub initial_velocity: Vec<f64>,
+    /// The motion at the start.
+    pub initial: InitialMotion,
     /// The same in its static stage, where bodies that wait for the dynamics are held and bolts have no stiffness; none without both.
     pub staged: Option<Arc<System>>,
+}
+
+/// The motion of a system at the start.
+#[derive(Clone, Debug, Default)]
+pub struct InitialMotion {
+    /// Displacement, m.
+    pub displacement: Vec<f64>,
+    /// Velocity, m/s; zero where an unknown is held.
+    pub velocity: Vec<f64>,
+    /// Rotations of the nodes that have any.
+    pub frames: Vec<Rotation>,
 }
 
 impl System {

@@ -160,7 +160,7 @@ impl Between {
             data: Vec::new(),
             start: [zeros(), zeros()],
             end: [zeros(), zeros()],
-            frames: system.initial_frames.clone(),
+            frames: system.initial.frames.clone(),
             place: zeros(),
             nodal: Vec::new(),
             still: zeros(),

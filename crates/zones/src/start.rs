@@ -51,7 +51,7 @@ impl Zones {
             make_room(&mut drivers, &systems)?;
         }
         let multipliers = start(&mut drivers, (&mut rows, &mut turning, count), &|zone| {
-            systems[zone].initial_displacement.clone()
+            systems[zone].initial.displacement.clone()
         })?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
         let far = zoned.zones.iter();
@@ -196,7 +196,7 @@ fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> ByZone {
 fn make_room(drivers: &mut [Driver], systems: &[Arc<System>]) -> Result<(), Error> {
     for (driver, system) in drivers.iter_mut().zip(systems) {
         driver.link(&vec![0.0; system.unknowns()]);
-        driver.restart(&system.initial_displacement, &system.initial_velocity)?;
+        driver.restart(&system.initial.displacement, &system.initial.velocity)?;
     }
     Ok(())
 }

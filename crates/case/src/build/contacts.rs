@@ -170,7 +170,7 @@ impl Builder<'_> {
             if !system.contacts[k].moves() && 2.0 * fastest * dt <= element {
                 continue;
             }
-            let start = &system.initial_displacement;
+            let start = &system.initial.displacement;
             let way = approach(system, &accelerations, (k, start)).speed * dt;
             if way > element {
                 self.doubt(format!(
@@ -469,6 +469,6 @@ fn fastest(system: &System) -> f64 {
         return f64::INFINITY;
     }
     let square = |v: &[f64]| v.iter().map(|v| v * v).sum::<f64>();
-    let nodes = system.initial_velocity.chunks(dim.max(1));
+    let nodes = system.initial.velocity.chunks(dim.max(1));
     nodes.map(square).fold(0.0, f64::max).sqrt()
 }

@@ -12,7 +12,7 @@ impl Builder<'_> {
     /// Refuses contacts that penetrate at the start, in the initial displacement, or tells of them where the case lets them.
     pub(super) fn penetration(&mut self, system: &System) {
         let slack = system.tolerance.max(1e-9 * system.mesh.size());
-        let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
+        let places = system.places(0.0, &system.initial.displacement, &system.initial.frames);
         for (k, contact) in system.contacts.iter().enumerate() {
             let name = &contact.name;
             let way = self.case.contact.get(name).map(|contact| contact.initial);

@@ -151,7 +151,7 @@ fn solve(
     let mut rows = Rows::default();
     rows.clear();
     contact.pair(
-        &system.places(0.0, &system.initial_displacement, &system.initial_frames),
+        &system.places(0.0, &system.initial.displacement, &system.initial.frames),
         &mut Search::default(),
         &mut rows,
     );
@@ -268,7 +268,7 @@ fn bar(
         .clone()
         .find(|&(_, node)| !clamped(node))
         .map_or(0, |(_, node)| node);
-    let velocity = along(&system.unknowns.vector(first, &system.initial_velocity));
+    let velocity = along(&system.unknowns.vector(first, &system.initial.velocity));
     let gravity: f64 = along(&gravity(system, indices));
     Ok(bar.with_velocity(velocity).with_gravity(-gravity))
 }

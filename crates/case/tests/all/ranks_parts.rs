@@ -174,10 +174,10 @@ fn a_part_of_a_system_is_that_of_the_whole() {
                     assert_eq!(around.mass.lumped[i], whole.mass.lumped[j]);
                     assert!((around.load[i] - whole.load[j]).abs() <= 1e-15 * most);
                     assert_eq!(around.fixed[i], whole.fixed[j]);
-                    assert_eq!(around.initial_velocity[i], whole.initial_velocity[j]);
+                    assert_eq!(around.initial.velocity[i], whole.initial.velocity[j]);
                     assert_eq!(
-                        around.initial_displacement[i],
-                        whole.initial_displacement[j]
+                        around.initial.displacement[i],
+                        whole.initial.displacement[j]
                     );
                 }
             }

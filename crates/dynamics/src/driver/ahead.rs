@@ -22,7 +22,7 @@ impl Driver {
                 false => residual[i] + self.attempt.maps.contact() * motion.contact_force[i] + link,
             };
         }
-        self.free_motion()?;
+        self.links.free_motion(&mut self.parts, &mut self.attempt)?;
         let vectors = &mut self.attempt.vectors;
         for (dx, x) in vectors.dx.iter_mut().zip(&vectors.x) {
             *dx += x;

@@ -60,7 +60,7 @@ impl Driver {
             ),
         );
         let Some(c) = self.certain_load(&rigid, scale) else {
-            return match self.tips(&rigid) {
+            return match self.contacts.tips(&mut self.parts, &self.attempt, &rigid) {
                 true => Err(self.attempt.unheld(&rigid, &self.parts.floating.carried)),
                 false => Ok(false),
             };
@@ -91,7 +91,7 @@ impl Driver {
         let change = before.iter().zip(&c).map(|(before, c)| c - before);
         let change: Vec<f64> = change.collect();
         let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
-        let grounded = self.grounded();
+        let grounded = self.contacts.grounded(&self.parts, &self.attempt);
         if !grounded.is_empty() {
             self.parts.floating.carried.clone_from(&c);
         }
@@ -103,31 +103,6 @@ impl Driver {
         let least = (self.attempt.system.nonlinear.iteration.tolerance * scale)
             .max(self.parts.rounding(&self.attempt));
         (norm(&c) > least).then_some(c)
-    }
-
-    /// Whether contact carries a piece that has gone on, for as many iterations as may be taken, along a motion with no contact on
-    /// its way, and its load has not become less than half.
-    fn tips(&mut self, rigid: &Rigid) -> bool {
-        let load = norm(&self.parts.floating.load);
-        let carried =
-            self.parts.floating.load == self.parts.floating.carried && load > self.parts.left_over;
-        if !carried {
-            return false;
-        }
-        let free = self
-            .contacts
-            .way_to_contact(&self.attempt, rigid, &self.parts.floating.load)
-            .is_none();
-        let floating = &mut self.parts.floating;
-        if !free || load < 0.5 * floating.tipped {
-            (floating.tipping, floating.tipped) = (0, 0.0);
-            return false;
-        }
-        if floating.tipping == 0 {
-            floating.tipped = load;
-        }
-        floating.tipping += 1;
-        floating.tipping >= self.attempt.system.nonlinear.iteration.passes
     }
 
     /// The error of iterations that ended out of balance: the load along a motion that nothing holds, where most is that and
@@ -145,7 +120,7 @@ impl Driver {
             );
             let c = self.unheld_load(&rigid);
             let mut loose = c.clone();
-            for piece in self.grounded() {
+            for piece in self.contacts.grounded(&self.parts, &self.attempt) {
                 loose[rigid.coordinates(piece)].fill(0.0);
             }
             let free = || {
@@ -163,7 +138,8 @@ impl Driver {
                 };
             }
         }
-        self.no_equilibrium(passes)
+        self.contacts
+            .no_equilibrium(&self.parts, &self.attempt, passes)
     }
 
     /// Loads and contact forces along the rigid motions, less what is held: internal forces have no resultant, and those of springs are held.
@@ -173,34 +149,6 @@ impl Driver {
         let mut c = rigid.of(left.map(|i| (i, vectors.residual[i] + vectors.contact[i])));
         self.held(rigid).take_from(&mut c);
         c
-    }
-
-    /// Pieces that hang together by contact forces with something that does not float.
-    fn grounded(&self) -> Vec<usize> {
-        let pieces = &*self.parts.floating.pieces;
-        let count = pieces.len();
-        // one set more: all that does not float
-        let mut set: Vec<usize> = (0..=count).collect();
-        for point in self.attempt.carrying() {
-            let (contact, _) = self.attempt.system.point(point);
-            let (unknowns, _) = self.contacts.pairing.rows.row(point);
-            let touched = unknowns
-                .iter()
-                .map(|&i| pieces.of(i as usize).unwrap_or(count));
-            let mut touched: Vec<usize> = touched.collect();
-            if matches!(contact.target, Target::Rigid(_)) {
-                touched.push(count);
-            }
-            for pair in touched.windows(2) {
-                let [from, to] = [pair[0], pair[1]].map(|piece| set[piece]);
-                for set in set.iter_mut().filter(|set| **set == from) {
-                    *set = to;
-                }
-            }
-        }
-        (0..count)
-            .filter(|&piece| set[piece] == set[count])
-            .collect()
     }
 
     /// Shortens the motion of the iteration along rigid motions that nothing holds to the reach of what it knows of the
@@ -349,5 +297,56 @@ impl Contacts {
             }
         }
         way
+    }
+
+    /// Whether contact carries a piece that has gone on, for as many iterations as may be taken, along a motion with no contact on
+    /// its way, and its load has not become less than half.
+    pub(super) fn tips(&self, parts: &mut Parts, attempt: &Attempt, rigid: &Rigid) -> bool {
+        let load = norm(&parts.floating.load);
+        let carried = parts.floating.load == parts.floating.carried && load > parts.left_over;
+        if !carried {
+            return false;
+        }
+        let free = self
+            .way_to_contact(attempt, rigid, &parts.floating.load)
+            .is_none();
+        let floating = &mut parts.floating;
+        if !free || load < 0.5 * floating.tipped {
+            (floating.tipping, floating.tipped) = (0, 0.0);
+            return false;
+        }
+        if floating.tipping == 0 {
+            floating.tipped = load;
+        }
+        floating.tipping += 1;
+        floating.tipping >= attempt.system.nonlinear.iteration.passes
+    }
+
+    /// Pieces that hang together by contact forces with something that does not float.
+    pub(super) fn grounded(&self, parts: &Parts, attempt: &Attempt) -> Vec<usize> {
+        let pieces = &*parts.floating.pieces;
+        let count = pieces.len();
+        // one set more: all that does not float
+        let mut set: Vec<usize> = (0..=count).collect();
+        for point in attempt.carrying() {
+            let (contact, _) = attempt.system.point(point);
+            let (unknowns, _) = self.pairing.rows.row(point);
+            let touched = unknowns
+                .iter()
+                .map(|&i| pieces.of(i as usize).unwrap_or(count));
+            let mut touched: Vec<usize> = touched.collect();
+            if matches!(contact.target, Target::Rigid(_)) {
+                touched.push(count);
+            }
+            for pair in touched.windows(2) {
+                let [from, to] = [pair[0], pair[1]].map(|piece| set[piece]);
+                for set in set.iter_mut().filter(|set| **set == from) {
+                    *set = to;
+                }
+            }
+        }
+        (0..count)
+            .filter(|&piece| set[piece] == set[count])
+            .collect()
     }
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::Driver;
-use super::owners::Attempt;
+use super::owners::{Attempt, Balances};
 use crate::costs::Phases;
 use crate::error::Error;
 use crate::report::Notices;
@@ -42,7 +42,8 @@ impl Driver {
         self.leave_direct();
         self.attempt.vectors.make_room(&self.attempt.state.motion);
         if !self.parts.prepared {
-            self.project_predictor()?;
+            self.stages
+                .project_predictor(&mut self.contacts, &mut self.attempt)?;
         }
         self.solve_on_the_clock()?;
         let (solved, forces) = (Instant::now(), self.attempt.phases.forces);
@@ -70,7 +71,7 @@ impl Driver {
         &mut self,
         attempt: impl FnOnce(&mut Driver) -> Result<(), Error>,
     ) -> Result<(), Error> {
-        if !self.find_jump()? {
+        if !self.balances.find_jump(&self.attempt)? {
             return attempt(self);
         }
         self.balances
@@ -82,18 +83,6 @@ impl Driver {
             .exchange(&mut self.attempt.state.motion.v);
         outcome
     }
-
-    /// Computes the jump of the supports at the start of the step; tells whether there is one.
-    fn find_jump(&mut self) -> Result<bool, Error> {
-        if self.attempt.maps.is_static() || self.attempt.system.nonlinear.follows.is_empty() {
-            self.balances.jump.clear();
-            return Ok(false);
-        }
-        let span = [self.attempt.state.time, self.attempt.dt];
-        self.balances
-            .jump
-            .find(&self.attempt.system, &self.attempt.state.motion, span)
-    }
 }
 
 impl Attempt {
@@ -104,5 +93,17 @@ impl Attempt {
         };
         let counted = counted(&self.phases) - counted(&before);
         self.phases.contact += begin.elapsed().saturating_sub(counted);
+    }
+}
+
+impl Balances {
+    /// Computes the jump of the supports at the start of the step; tells whether there is one.
+    pub(super) fn find_jump(&mut self, attempt: &Attempt) -> Result<bool, Error> {
+        if attempt.maps.is_static() || attempt.system.nonlinear.follows.is_empty() {
+            self.jump.clear();
+            return Ok(false);
+        }
+        let span = [attempt.state.time, attempt.dt];
+        self.jump.find(&attempt.system, &attempt.state.motion, span)
     }
 }

@@ -55,7 +55,8 @@ impl Driver {
             self.attempt.next.motion.a.fill(0.0);
             self.attempt.next.motion.memory.fill(0.0);
         }
-        self.end_forces()?;
+        self.contacts
+            .end_forces(&mut self.parts, &mut self.attempt)?;
         let new = &mut self.attempt.next.motion;
         new.internal_force
             .copy_from_slice(&self.attempt.vectors.internal);
@@ -66,38 +67,6 @@ impl Driver {
         self.attempt.keep_bolts();
         self.contacts.end_interface(&mut self.attempt);
         self.contacts.crush(&mut self.attempt);
-        Ok(())
-    }
-
-    /// Internal forces at the end of the step and in its balance; of a step that is linear in the unknown the other forces at
-    /// the x found too.
-    fn end_forces(&mut self) -> Result<(), Error> {
-        let affine = self.is_affine();
-        let known = self.attempt.maps.is_explicit();
-        let at_the_end = |map: &StepMap| map.force == map.displacement;
-        let all = self.attempt.maps.all().iter().all(at_the_end);
-        let ended = match affine {
-            true => known && all,
-            false => self.attempt.between() || all,
-        };
-        if affine {
-            self.attempt.evaluate_inertia();
-            self.attempt.evaluate_rate();
-            self.parts.evaluate_damping(&mut self.attempt);
-        }
-        self.attempt
-            .vectors
-            .balanced
-            .copy_from_slice(&self.attempt.vectors.internal);
-        let dt = self.attempt.dt;
-        if !ended {
-            self.parts.stored =
-                self.parts
-                    .internal(&mut self.attempt, (Which::Next, false), |_| dt)?;
-        }
-        if affine && !known && self.attempt.system.is_nonlinear() {
-            self.parts.balance_linear_forces(&mut self.attempt);
-        }
         Ok(())
     }
 
@@ -485,5 +454,35 @@ impl Contacts {
                 new.crush[point] = law.crushed(old.crush[point], new.gap[point]);
             }
         }
+    }
+
+    /// Internal forces at the end of the step and in its balance; of a step that is linear in the unknown the other forces at
+    /// the x found too.
+    pub(super) fn end_forces(&self, parts: &mut Parts, attempt: &mut Attempt) -> Result<(), Error> {
+        let affine = self.is_affine(parts);
+        let known = attempt.maps.is_explicit();
+        let at_the_end = |map: &StepMap| map.force == map.displacement;
+        let all = attempt.maps.all().iter().all(at_the_end);
+        let ended = match affine {
+            true => known && all,
+            false => attempt.between() || all,
+        };
+        if affine {
+            attempt.evaluate_inertia();
+            attempt.evaluate_rate();
+            parts.evaluate_damping(attempt);
+        }
+        attempt
+            .vectors
+            .balanced
+            .copy_from_slice(&attempt.vectors.internal);
+        let dt = attempt.dt;
+        if !ended {
+            parts.stored = parts.internal(attempt, (Which::Next, false), |_| dt)?;
+        }
+        if affine && !known && attempt.system.is_nonlinear() {
+            parts.balance_linear_forces(attempt);
+        }
+        Ok(())
     }
 }

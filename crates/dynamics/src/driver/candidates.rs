@@ -1,14 +1,13 @@
 //! The interface problem of an iteration: candidates, forces, and the motion with them.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
 use super::Driver;
 use super::deletion::as_narrowed;
-use super::owners::{Attempt, Contacts, Parts};
+use super::owners::{Attempt, Contacts, Parts, Stages};
 use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
@@ -21,12 +20,13 @@ impl Driver {
     /// The motion `dx` of the iteration and the contact forces after it.
     pub(super) fn solve_interface(&mut self) -> Result<(), Error> {
         self.load_iteration();
-        self.choose_candidates();
+        self.contacts
+            .choose_candidates(&self.parts, &mut self.attempt);
         for _ in 0..ADDITIONS {
             self.begin_forces()?;
             self.find_forces()?;
             self.contacts.look_further(&mut self.attempt);
-            if !self.add_missed() {
+            if !self.contacts.add_missed(&self.parts, &mut self.attempt) {
                 break;
             }
         }
@@ -35,18 +35,21 @@ impl Driver {
 
     /// The motion `dx` and the contact forces of a pass with the forces in `work` and the columns that are at hand.
     pub(super) fn solve_with_columns(&mut self) -> Result<(), Error> {
-        self.begin_solve()?;
+        self.links.begin_solve(&mut self.parts, &mut self.attempt)?;
         self.find_forces()
     }
 
     /// Begins the solve with the forces in `work` in the way in which contact forces are found.
     pub(super) fn begin_forces(&mut self) -> Result<(), Error> {
-        match self.finds_all_at_once() {
+        match self
+            .contacts
+            .finds_all_at_once(&mut self.parts, &self.attempt)
+        {
             true => {
                 self.parts.leave_solve(&mut self.attempt);
                 Ok(())
             }
-            false => self.begin_solve(),
+            false => self.links.begin_solve(&mut self.parts, &mut self.attempt),
         }
     }
 
@@ -73,73 +76,6 @@ impl Driver {
         }
     }
 
-    /// The first half of the solve with the forces in `work`.
-    ///
-    /// # Errors
-    /// Iterations that do not end.
-    fn begin_solve(&mut self) -> Result<(), Error> {
-        let begin = Instant::now();
-        if let Some((operators, _)) = self.parts.effective.both() {
-            operators.begin(&self.attempt.vectors.work, &mut self.attempt.vectors.half);
-        }
-        self.attempt.vectors.left.clear();
-        self.hold_links();
-        self.attempt.phases.sweeps += begin.elapsed();
-        self.parts.solves_ended(&self.attempt)
-    }
-
-    /// The motion `dx` that the forces in `work` and the jump of the supports give.
-    ///
-    /// # Errors
-    /// Iterations that do not end.
-    pub(super) fn free_motion(&mut self) -> Result<(), Error> {
-        if self.attempt.jumps() {
-            self.parts.load_jump(&mut self.attempt);
-        }
-        self.begin_solve()?;
-        self.parts.end_iteration(&mut self.attempt);
-        Ok(())
-    }
-
-    /// Points that may carry a force. Some laws say so before the forces; of others, those are taken that carried one or that
-    /// close at the x of the iteration or at twice the rate at the start, and the rest is looked at after the solve.
-    pub(super) fn choose_candidates(&mut self) {
-        self.contacts.candidates.clear();
-        let active = std::mem::take(&mut self.contacts.active);
-        for point in active.within(0..self.attempt.system.points()) {
-            let chosen = match self.contacts.told(&self.attempt, point) {
-                Some(told) => told,
-                None => {
-                    self.attempt.next.interface.status[point] != Status::Open
-                        || self.approaches(point)
-                }
-            };
-            self.attempt.next.interface.watched[point] = chosen;
-            if chosen {
-                self.contacts.candidates.push(point as u32);
-            }
-        }
-        self.contacts.active = active;
-        if self.attempt.maps.is_explicit() {
-            self.contacts.leave_to_others(&self.attempt);
-        }
-    }
-
-    fn approaches(&self, point: usize) -> bool {
-        let tolerance = self.attempt.system.tolerance_at(point);
-        match self.is_affine() {
-            true => {
-                let gap = self.contacts.pairing.rows.gap(point);
-                approaches(
-                    (gap, self.contacts.rate_at_start(&self.attempt, point)),
-                    self.attempt.dt,
-                    tolerance,
-                )
-            }
-            false => self.contacts.now(&self.attempt, point, true).0 <= tolerance,
-        }
-    }
-
     /// Forces and statuses of the candidates, whose forces are added to the begun solve.
     fn solve_candidates(&mut self) -> Result<(), Error> {
         if self.contacts.candidates.is_empty() {
@@ -149,7 +85,10 @@ impl Driver {
         if self.contacts.rubs(&self.attempt) {
             return self.solve_with_friction();
         }
-        let (system, together) = (Arc::clone(&self.attempt.system), self.is_one_group());
+        let (system, together) = (
+            Arc::clone(&self.attempt.system),
+            self.stages.is_one_group(&self.contacts, &self.attempt),
+        );
         let Some((operators, compliance)) = self.parts.effective.both() else {
             return Ok(());
         };
@@ -161,14 +100,19 @@ impl Driver {
             compliance.update(points, rows, &system.fixed, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
-        self.describe_candidates(None);
+        self.contacts
+            .describe_candidates(&self.parts, &self.attempt, None);
         let factor = self.attempt.maps.contact();
         if iterate {
             return self.solve_iterated(factor);
         }
         if several {
             let map = self.attempt.maps.first();
-            self.solve_groups([map.gap.x * factor, map.rate.x * factor])?;
+            self.contacts.solve_groups(
+                &mut self.parts,
+                &self.attempt,
+                [map.gap.x * factor, map.rate.x * factor],
+            )?;
             return self.take_forces(factor);
         }
         let Some((operators, compliance, mut linking)) = self.parts.effective.all() else {
@@ -262,137 +206,6 @@ impl Driver {
         self.contacts.take_weak(&self.attempt);
         Ok(())
     }
-
-    /// Whether all candidates are one problem, whatever they share: where links, weak forms or the mass couple them besides.
-    pub(super) fn is_one_group(&self) -> bool {
-        let sums = self.stages.impulses.is_some()
-            && sums_compliances(&self.attempt.system, self.attempt.maps.first());
-        sums || self.attempt.has_links() || !self.contacts.weak.none()
-    }
-
-    /// Forces and statuses of candidates in several groups, each solved by itself.
-    fn solve_groups(&mut self, factors: [f64; 2]) -> Result<(), Error> {
-        let Some((_, compliance)) = self.parts.effective.both() else {
-            return Ok(());
-        };
-        let n = self.contacts.candidates.len();
-        let all = &mut self.contacts.interface;
-        all.forces.clear();
-        all.forces.resize(n, 0.0);
-        all.statuses.clear();
-        all.statuses.resize(n, Status::Open);
-        (all.passes, all.circled, all.unsettled) = (0, None, None);
-        let mut failed = None;
-        for (group, range) in compliance.groups().ranges().enumerate() {
-            let places = &compliance.groups().order()[range];
-            if self.contacts.interfaces.len() == group {
-                let mut solver = Interface::default();
-                solver.interrupt.clone_from(&self.attempt.interrupt);
-                self.contacts.interfaces.push(solver);
-            }
-            let (solver, all) = (
-                &mut self.contacts.interfaces[group],
-                &mut self.contacts.interface,
-            );
-            let of_place = |&place: &u32| self.contacts.candidate_data[place as usize];
-            let own: Vec<Candidate> = places.iter().map(of_place).collect();
-            let block = compliance.block(group);
-            let problem = (Compliance::Dense(block), compliance.version);
-            if let Err(failure) = solver.solve(&own, problem, factors) {
-                failed = Some((failure, block.to_vec(), places.to_vec()));
-                break;
-            }
-            for (k, &place) in places.iter().enumerate() {
-                all.forces[place as usize] = solver.forces[k];
-                all.statuses[place as usize] = solver.statuses[k];
-            }
-            all.passes = all.passes.max(solver.passes);
-            let circled = solver.circled.map(|k| places[k] as usize);
-            all.circled = all.circled.or(circled);
-            let unsettled = solver.unsettled.map(|k| places[k] as usize);
-            all.unsettled = all.unsettled.or(unsettled);
-        }
-        if let Some((failure, block, places)) = failed {
-            self.contacts.keep_places(&places);
-            return Err(self
-                .contacts
-                .keep_problem(&self.attempt, failure, block, factors));
-        }
-        Ok(())
-    }
-
-    /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
-    fn add_missed(&mut self) -> bool {
-        let before = self.contacts.candidates.len();
-        let active = std::mem::take(&mut self.contacts.active);
-        for point in active.within(0..self.attempt.system.points()) {
-            let known = self.contacts.candidates[..before].binary_search(&(point as u32));
-            if known.is_ok() || self.contacts.told(&self.attempt, point).is_some() {
-                continue;
-            }
-            let step = self
-                .contacts
-                .pairing
-                .rows
-                .product(point, &self.attempt.vectors.dx);
-            let (gap, rate) = self.contacts.now(&self.attempt, point, false);
-            let [closing, approach] = self.attempt.added(point, step);
-            let ahead = (gap + closing, rate + approach);
-            let (gap, rate) = self.contacts.weakly(&self.attempt, point, ahead);
-            if self.asks(point, gap, rate) {
-                self.contacts.candidates.push(point as u32);
-                self.attempt.next.interface.watched[point] = true;
-            }
-        }
-        self.contacts.active = active;
-        self.contacts.candidates.sort_unstable();
-        self.contacts.candidates.len() > before
-    }
-}
-
-impl Parts {
-    /// Adds to the forces in `work` what the jump of the supports gives.
-    pub(super) fn load_jump(&mut self, attempt: &mut Attempt) {
-        let vectors = &mut attempt.vectors;
-        self.effective.load_of(&vectors.jump, &mut vectors.place);
-        for (i, (r, k)) in vectors.work.iter_mut().zip(&vectors.place).enumerate() {
-            *r = if attempt.system.fixed[i] { 0.0 } else { *r - k };
-        }
-    }
-
-    /// Whether all solves since the last begin have ended.
-    ///
-    /// # Errors
-    /// Iterations that did not.
-    pub(super) fn solves_ended(&mut self, attempt: &Attempt) -> Result<(), Error> {
-        let operators = self.effective.both();
-        match operators.and_then(|(operators, _)| operators.failure()) {
-            None => Ok(()),
-            Some((unknown, cause)) => Err(attempt.not_solved(unknown, cause)),
-        }
-    }
-
-    /// Leaves the solve with the forces in `work` to the problem of contacts.
-    pub(super) fn leave_solve(&mut self, attempt: &mut Attempt) {
-        if let Some((operators, _)) = self.effective.both() {
-            let vectors = &mut attempt.vectors;
-            operators.leave(&vectors.work, &mut vectors.half, &mut vectors.left);
-        }
-    }
-
-    /// The motion of the iteration from the begun solve with all forces in it.
-    pub(super) fn end_iteration(&mut self, attempt: &mut Attempt) {
-        let begin = Instant::now();
-        if let Some((operators, _)) = self.effective.both() {
-            operators.end(&mut attempt.vectors.half, &mut attempt.vectors.dx);
-        }
-        if attempt.vectors.jumps {
-            for (dx, jump) in attempt.vectors.dx.iter_mut().zip(&attempt.vectors.jump) {
-                *dx += jump;
-            }
-        }
-        attempt.phases.sweeps += begin.elapsed();
-    }
 }
 
 impl Contacts {
@@ -466,6 +279,120 @@ impl Contacts {
         });
         attempt.interface_error(failure, &self.candidates)
     }
+
+    /// Points that may carry a force. Some laws say so before the forces; of others, those are taken that carried one or that
+    /// close at the x of the iteration or at twice the rate at the start, and the rest is looked at after the solve.
+    pub(super) fn choose_candidates(&mut self, parts: &Parts, attempt: &mut Attempt) {
+        self.candidates.clear();
+        let active = std::mem::take(&mut self.active);
+        for point in active.within(0..attempt.system.points()) {
+            let chosen = match self.told(attempt, point) {
+                Some(told) => told,
+                None => {
+                    attempt.next.interface.status[point] != Status::Open
+                        || self.approaches(parts, attempt, point)
+                }
+            };
+            attempt.next.interface.watched[point] = chosen;
+            if chosen {
+                self.candidates.push(point as u32);
+            }
+        }
+        self.active = active;
+        if attempt.maps.is_explicit() {
+            self.leave_to_others(attempt);
+        }
+    }
+
+    pub(super) fn approaches(&self, parts: &Parts, attempt: &Attempt, point: usize) -> bool {
+        let tolerance = attempt.system.tolerance_at(point);
+        match self.is_affine(parts) {
+            true => {
+                let gap = self.pairing.rows.gap(point);
+                approaches(
+                    (gap, self.rate_at_start(attempt, point)),
+                    attempt.dt,
+                    tolerance,
+                )
+            }
+            false => self.now(attempt, point, true).0 <= tolerance,
+        }
+    }
+
+    /// Forces and statuses of candidates in several groups, each solved by itself.
+    pub(super) fn solve_groups(
+        &mut self,
+        parts: &mut Parts,
+        attempt: &Attempt,
+        factors: [f64; 2],
+    ) -> Result<(), Error> {
+        let Some((_, compliance)) = parts.effective.both() else {
+            return Ok(());
+        };
+        let n = self.candidates.len();
+        let all = &mut self.interface;
+        all.forces.clear();
+        all.forces.resize(n, 0.0);
+        all.statuses.clear();
+        all.statuses.resize(n, Status::Open);
+        (all.passes, all.circled, all.unsettled) = (0, None, None);
+        let mut failed = None;
+        for (group, range) in compliance.groups().ranges().enumerate() {
+            let places = &compliance.groups().order()[range];
+            if self.interfaces.len() == group {
+                let mut solver = Interface::default();
+                solver.interrupt.clone_from(&attempt.interrupt);
+                self.interfaces.push(solver);
+            }
+            let (solver, all) = (&mut self.interfaces[group], &mut self.interface);
+            let of_place = |&place: &u32| self.candidate_data[place as usize];
+            let own: Vec<Candidate> = places.iter().map(of_place).collect();
+            let block = compliance.block(group);
+            let problem = (Compliance::Dense(block), compliance.version);
+            if let Err(failure) = solver.solve(&own, problem, factors) {
+                failed = Some((failure, block.to_vec(), places.to_vec()));
+                break;
+            }
+            for (k, &place) in places.iter().enumerate() {
+                all.forces[place as usize] = solver.forces[k];
+                all.statuses[place as usize] = solver.statuses[k];
+            }
+            all.passes = all.passes.max(solver.passes);
+            let circled = solver.circled.map(|k| places[k] as usize);
+            all.circled = all.circled.or(circled);
+            let unsettled = solver.unsettled.map(|k| places[k] as usize);
+            all.unsettled = all.unsettled.or(unsettled);
+        }
+        if let Some((failure, block, places)) = failed {
+            self.keep_places(&places);
+            return Err(self.keep_problem(attempt, failure, block, factors));
+        }
+        Ok(())
+    }
+
+    /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
+    pub(super) fn add_missed(&mut self, parts: &Parts, attempt: &mut Attempt) -> bool {
+        let before = self.candidates.len();
+        let active = std::mem::take(&mut self.active);
+        for point in active.within(0..attempt.system.points()) {
+            let known = self.candidates[..before].binary_search(&(point as u32));
+            if known.is_ok() || self.told(attempt, point).is_some() {
+                continue;
+            }
+            let step = self.pairing.rows.product(point, &attempt.vectors.dx);
+            let (gap, rate) = self.now(attempt, point, false);
+            let [closing, approach] = attempt.added(point, step);
+            let ahead = (gap + closing, rate + approach);
+            let (gap, rate) = self.weakly(attempt, point, ahead);
+            if self.asks(parts, attempt, point, gap, rate) {
+                self.candidates.push(point as u32);
+                attempt.next.interface.watched[point] = true;
+            }
+        }
+        self.active = active;
+        self.candidates.sort_unstable();
+        self.candidates.len() > before
+    }
 }
 
 impl Attempt {
@@ -489,5 +416,14 @@ impl Attempt {
             }
             Failure::Interrupted { .. } => Error::Interrupted,
         }
+    }
+}
+
+impl Stages {
+    /// Whether all candidates are one problem, whatever they share: where links, weak forms or the mass couple them besides.
+    pub(super) fn is_one_group(&self, contacts: &Contacts, attempt: &Attempt) -> bool {
+        let sums =
+            self.impulses.is_some() && sums_compliances(&attempt.system, attempt.maps.first());
+        sums || attempt.has_links() || !contacts.weak.none()
     }
 }

@@ -5,134 +5,15 @@ use std::sync::Arc;
 use carom_contact::law::{End, Level, Local, Status};
 use carom_contact::{Balance, Sliding};
 
+use super::Vectors;
 use super::deletion::as_narrowed;
-use super::owners::{Attempt, Contacts};
+use super::owners::{Attempt, Contacts, Parts, Stages};
 use super::paired::{Paired, append, instant, looks_ahead, part_way, told};
-use super::{Driver, Vectors};
 use crate::step_map::{Row, StepMap};
 use carom_system::ContactPair;
 
 /// Entry of a row of unit normals that is no rounding of a direction.
 const CLEARLY: f64 = 1e-3;
-
-impl Driver {
-    /// Whether the law of an open point asks for a force at this gap and rate, beyond rounding.
-    pub(super) fn asks(&self, point: usize, gap: f64, rate: f64) -> bool {
-        let end = End {
-            gap_released: gap,
-            gap,
-            rate,
-            force: 0.0,
-        };
-        let law = self.attempt.law(self.attempt.system.point(point).0);
-        let least = match self.is_affine() {
-            true => 0.0,
-            false => -self
-                .attempt
-                .gap_tolerance(self.attempt.system.contact_of(point)),
-        };
-        gap < least
-            && law.get().status(
-                Status::Open,
-                &end,
-                &self.contacts.local(&self.attempt, point, gap),
-                0,
-            ) != Status::Open
-    }
-
-    /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
-    pub(super) fn worst_point(&self) -> Option<(usize, f64)> {
-        let contacts = 0..self.attempt.system.contacts.len();
-        let worst = contacts.filter_map(|contact| self.worst_point_of(contact));
-        worst.reduce(|one, other| if other.1 > one.1 { other } else { one })
-    }
-
-    /// The same of a contact. Its forces are compared with the largest of its own.
-    fn worst_point_of(&self, contact: usize) -> Option<(usize, f64)> {
-        let tolerance = self.attempt.gap_tolerance(contact);
-        let points = self.attempt.system.points_of(contact);
-        let forces = self.attempt.next.interface.force[points.clone()].iter();
-        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
-        let mut worst: Option<(usize, f64)> = None;
-        for point in points {
-            if self.contacts.told(&self.attempt, point) == Some(false) {
-                continue;
-            }
-            let (gap, rate) = self.contacts.weakly(
-                &self.attempt,
-                point,
-                self.contacts.now(&self.attempt, point, true),
-            );
-            let status = self.attempt.next.interface.status[point];
-            let force = self.attempt.next.interface.force[point];
-            let law = self.attempt.law(self.attempt.system.point(point).0);
-            let defect = match status {
-                Status::Open if self.contacts.told(&self.attempt, point).is_none() => {
-                    match self.asks(point, gap, rate) {
-                        true => -gap / tolerance,
-                        false => 0.0,
-                    }
-                }
-                _ => {
-                    let local = self.contacts.local(&self.attempt, point, gap);
-                    let relation = match status {
-                        Status::Open => law.get().relation(Status::Closed, &local),
-                        _ => law.get().relation(status, &local),
-                    };
-                    let left = relation.gap * gap
-                        + relation.rate * rate
-                        + relation.compliance * force
-                        + relation.offset;
-                    let scale = relation.gap.abs() + relation.rate.abs() / self.attempt.dt;
-                    // a law that cuts tension off leaves a gap or a rate over where it would pull
-                    match status == Status::Open || law.get().clips() && force == 0.0 {
-                        true => (-left / scale / tolerance).max(0.0),
-                        false => (left / scale / tolerance).abs(),
-                    }
-                }
-            };
-            let cone = self.contacts.cone_defect(&self.attempt, point, largest)
-                / self.attempt.system.nonlinear.iteration.tolerance;
-            let defect = defect
-                .max(self.contacts.slip_defect(&self.attempt, point) / tolerance)
-                .max(cone);
-            if worst.is_none_or(|(_, most)| defect > most) {
-                worst = Some((point, defect));
-            }
-        }
-        worst
-    }
-
-    /// Nᵀ P of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
-    /// uses it.
-    pub(super) fn spread(&mut self) {
-        let f = &mut self.attempt.vectors.contact;
-        f.fill(0.0);
-        for point in self.contacts.active.within(0..self.attempt.system.points()) {
-            let force = self.attempt.next.interface.force[point];
-            if force != 0.0 {
-                self.contacts.pairing.rows.add_force(point, force, f);
-            }
-        }
-        self.contacts.spread_friction(&mut self.attempt);
-        let (system, vectors) = (&*self.attempt.system, &mut self.attempt.vectors);
-        let pushes = !vectors.push.is_empty();
-        if let Some(stage) = self.stages.impulses.as_mut().filter(|_| pushes) {
-            stage.hold(system, &mut vectors.contact);
-        }
-        for (i, push) in vectors.push.iter_mut().enumerate() {
-            *push = match system.fixed[i] {
-                true => 0.0,
-                false => vectors.contact[i] / system.mass.lumped[i],
-            };
-        }
-    }
-
-    /// Whether all is linear in the unknown, so that one iteration is all.
-    pub(super) fn is_affine(&self) -> bool {
-        !self.contacts.turns && !self.parts.effective.iterates()
-    }
-}
 
 impl Contacts {
     /// The configuration in which a contact is paired.
@@ -441,6 +322,102 @@ impl Contacts {
         }
         self.pairing.rows.move_from(first, work);
     }
+
+    /// Whether the law of an open point asks for a force at this gap and rate, beyond rounding.
+    pub(super) fn asks(
+        &self,
+        parts: &Parts,
+        attempt: &Attempt,
+        point: usize,
+        gap: f64,
+        rate: f64,
+    ) -> bool {
+        let end = End {
+            gap_released: gap,
+            gap,
+            rate,
+            force: 0.0,
+        };
+        let law = attempt.law(attempt.system.point(point).0);
+        let least = match self.is_affine(parts) {
+            true => 0.0,
+            false => -attempt.gap_tolerance(attempt.system.contact_of(point)),
+        };
+        gap < least
+            && law
+                .get()
+                .status(Status::Open, &end, &self.local(attempt, point, gap), 0)
+                != Status::Open
+    }
+
+    /// The point that disobeys its law most at the x of the iteration, and by how much in tolerances.
+    pub(super) fn worst_point(&self, parts: &Parts, attempt: &Attempt) -> Option<(usize, f64)> {
+        let contacts = 0..attempt.system.contacts.len();
+        let worst = contacts.filter_map(|contact| self.worst_point_of(parts, attempt, contact));
+        worst.reduce(|one, other| if other.1 > one.1 { other } else { one })
+    }
+
+    /// The same of a contact. Its forces are compared with the largest of its own.
+    pub(super) fn worst_point_of(
+        &self,
+        parts: &Parts,
+        attempt: &Attempt,
+        contact: usize,
+    ) -> Option<(usize, f64)> {
+        let tolerance = attempt.gap_tolerance(contact);
+        let points = attempt.system.points_of(contact);
+        let forces = attempt.next.interface.force[points.clone()].iter();
+        let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
+        let mut worst: Option<(usize, f64)> = None;
+        for point in points {
+            if self.told(attempt, point) == Some(false) {
+                continue;
+            }
+            let (gap, rate) = self.weakly(attempt, point, self.now(attempt, point, true));
+            let status = attempt.next.interface.status[point];
+            let force = attempt.next.interface.force[point];
+            let law = attempt.law(attempt.system.point(point).0);
+            let defect = match status {
+                Status::Open if self.told(attempt, point).is_none() => {
+                    match self.asks(parts, attempt, point, gap, rate) {
+                        true => -gap / tolerance,
+                        false => 0.0,
+                    }
+                }
+                _ => {
+                    let local = self.local(attempt, point, gap);
+                    let relation = match status {
+                        Status::Open => law.get().relation(Status::Closed, &local),
+                        _ => law.get().relation(status, &local),
+                    };
+                    let left = relation.gap * gap
+                        + relation.rate * rate
+                        + relation.compliance * force
+                        + relation.offset;
+                    let scale = relation.gap.abs() + relation.rate.abs() / attempt.dt;
+                    // a law that cuts tension off leaves a gap or a rate over where it would pull
+                    match status == Status::Open || law.get().clips() && force == 0.0 {
+                        true => (-left / scale / tolerance).max(0.0),
+                        false => (left / scale / tolerance).abs(),
+                    }
+                }
+            };
+            let cone = self.cone_defect(attempt, point, largest)
+                / attempt.system.nonlinear.iteration.tolerance;
+            let defect = defect
+                .max(self.slip_defect(attempt, point) / tolerance)
+                .max(cone);
+            if worst.is_none_or(|(_, most)| defect > most) {
+                worst = Some((point, defect));
+            }
+        }
+        worst
+    }
+
+    /// Whether all is linear in the unknown, so that one iteration is all.
+    pub(super) fn is_affine(&self, parts: &Parts) -> bool {
+        !self.turns && !parts.effective.iterates()
+    }
 }
 
 impl Attempt {
@@ -475,5 +452,32 @@ impl Attempt {
         let map = self.map_of(contact);
         let contact = &self.system.contacts[contact];
         !self.between() && looks_ahead(map, contact, self.law(contact))
+    }
+}
+
+impl Stages {
+    /// Nᵀ P of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
+    /// uses it.
+    pub(super) fn spread(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
+        let f = &mut attempt.vectors.contact;
+        f.fill(0.0);
+        for point in contacts.active.within(0..attempt.system.points()) {
+            let force = attempt.next.interface.force[point];
+            if force != 0.0 {
+                contacts.pairing.rows.add_force(point, force, f);
+            }
+        }
+        contacts.spread_friction(attempt);
+        let (system, vectors) = (&*attempt.system, &mut attempt.vectors);
+        let pushes = !vectors.push.is_empty();
+        if let Some(stage) = self.impulses.as_mut().filter(|_| pushes) {
+            stage.hold(system, &mut vectors.contact);
+        }
+        for (i, push) in vectors.push.iter_mut().enumerate() {
+            *push = match system.fixed[i] {
+                true => 0.0,
+                false => vectors.contact[i] / system.mass.lumped[i],
+            };
+        }
     }
 }

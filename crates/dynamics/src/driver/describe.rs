@@ -2,44 +2,9 @@
 
 use carom_contact::Rows;
 
-use super::Driver;
 use super::owners::{Attempt, Contacts, Parts};
 use crate::interface::Candidate;
 use crate::step_map::StepMap;
-
-impl Driver {
-    /// What the laws of the candidates know; of adaptive steps their gaps without contact forces too. `tangents`: how many rows of
-    /// tangents follow that of each point in the stacked rows; none where the points have rows of their own.
-    pub(super) fn describe_candidates(&mut self, tangents: Option<u32>) {
-        let mut data = std::mem::take(&mut self.contacts.candidate_data);
-        data.clear();
-        self.contacts.free_gaps.clear();
-        for k in 0..self.contacts.candidates.len() {
-            let point = self.contacts.candidates[k];
-            let last = self.attempt.next.interface.force[point as usize];
-            let free = match tangents {
-                Some(tangents) => self.parts.free_along(
-                    &self.attempt,
-                    point * (1 + tangents),
-                    &self.contacts.stacked,
-                    last,
-                ),
-                None => {
-                    self.parts
-                        .free_along(&self.attempt, point, &self.contacts.pairing.rows, last)
-                }
-            };
-            data.push(self.contacts.candidate(&self.attempt, point as usize, free));
-            if self.attempt.system.adaptive.is_some() {
-                let gap = self
-                    .contacts
-                    .gap_at_the_end(&self.attempt, point as usize, free);
-                self.contacts.free_gaps.push(gap);
-            }
-        }
-        self.contacts.candidate_data = data;
-    }
-}
 
 impl Contacts {
     /// What the law of a candidate knows. `free`: N x of the motion of the iteration without contact forces.
@@ -67,6 +32,35 @@ impl Contacts {
         let motion = &attempt.state.motion;
         let way = attempt.maps.on((rows, point), ahead, motion, xc);
         rows.gap(point) + way + attempt.map_of(number).displacement.x * free
+    }
+
+    /// What the laws of the candidates know; of adaptive steps their gaps without contact forces too. `tangents`: how many rows of
+    /// tangents follow that of each point in the stacked rows; none where the points have rows of their own.
+    pub(super) fn describe_candidates(
+        &mut self,
+        parts: &Parts,
+        attempt: &Attempt,
+        tangents: Option<u32>,
+    ) {
+        let mut data = std::mem::take(&mut self.candidate_data);
+        data.clear();
+        self.free_gaps.clear();
+        for k in 0..self.candidates.len() {
+            let point = self.candidates[k];
+            let last = attempt.next.interface.force[point as usize];
+            let free = match tangents {
+                Some(tangents) => {
+                    parts.free_along(attempt, point * (1 + tangents), &self.stacked, last)
+                }
+                None => parts.free_along(attempt, point, &self.pairing.rows, last),
+            };
+            data.push(self.candidate(attempt, point as usize, free));
+            if attempt.system.adaptive.is_some() {
+                let gap = self.gap_at_the_end(attempt, point as usize, free);
+                self.free_gaps.push(gap);
+            }
+        }
+        self.candidate_data = data;
     }
 }
 

@@ -34,7 +34,7 @@ impl Driver {
             Some(condensed) => condensed,
             None => {
                 let mut mass = Operators::new(&system, 1.0, 0.0, "mass matrix")?;
-                of_mass((&system, &system.link_rows), &mut mass)?
+                of_mass((&system, &system.links.rows), &mut mass)?
             }
         };
         links.free.resize(system.unknowns(), 0.0);
@@ -67,7 +67,7 @@ impl Driver {
         };
         let now = &mut self.links.multipliers.now;
         now.clear();
-        now.extend(system.link_rows.iter().map(of_row));
+        now.extend(system.links.rows.iter().map(of_row));
         condensed.solve(now);
         links.condensed = Some(condensed);
         self.links.spread_links(&mut self.attempt, &direct.links);
@@ -84,7 +84,7 @@ impl Links {
         for &unknown in &links.unknowns {
             force[unknown as usize] = 0.0;
         }
-        for (row, l) in system.link_rows.iter().zip(&self.multipliers.now) {
+        for (row, l) in system.links.rows.iter().zip(&self.multipliers.now) {
             for &(dof, c) in row {
                 force[dof as usize] += c * l;
             }

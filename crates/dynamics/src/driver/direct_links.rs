@@ -18,7 +18,8 @@ impl DirectLinks {
     /// None where links turn, or meet a contact.
     pub(super) fn of(system: &System) -> Option<DirectLinks> {
         let mut unknowns: Vec<u32> = system
-            .link_rows
+            .links
+            .rows
             .iter()
             .flatten()
             .map(|(dof, _)| *dof)
@@ -34,7 +35,7 @@ impl DirectLinks {
         // surfaces are renewed where elements are deleted
         let renewed = system.bodies.iter().any(|body| body.has_deletion());
         let apart = unknowns.is_empty() || !renewed && !touched().any(meets);
-        (apart && system.turning_rows.is_empty()).then_some(DirectLinks {
+        (apart && system.links.turning.is_empty()).then_some(DirectLinks {
             unknowns,
             ..DirectLinks::default()
         })

@@ -354,7 +354,7 @@ impl Effective {
 
 /// Whether rows of links act on any of some parts.
 fn is_any_linked(system: &System, parts: &[bool]) -> bool {
-    let mut linked = system.link_rows.iter().flatten();
+    let mut linked = system.links.rows.iter().flatten();
     linked.any(|(unknown, _)| parts[system.part_of(*unknown as usize)])
 }
 
@@ -400,7 +400,7 @@ impl Matrices {
         );
         compliance.version = made << 32;
         let links_iterate = is_any_linked(system, &iterated);
-        let linking = match system.link_rows.is_empty() || links_iterate {
+        let linking = match system.links.rows.is_empty() || links_iterate {
             true => None,
             false => {
                 let made = Made {
@@ -409,7 +409,7 @@ impl Matrices {
                     coupled: false,
                     version: compliance.version,
                 };
-                let rows = (system, &system.link_rows);
+                let rows = (system, &system.links.rows);
                 let links = Linking::new(rows, (maps, between), (&mut operators, &made));
                 Some(links?)
             }

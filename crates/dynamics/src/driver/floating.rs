@@ -157,10 +157,10 @@ fn free_motion(system: &System, nodes: &[u32], motion: &str) -> Error {
         nodes.binary_search(&node).is_ok()
     };
     let joins = |(_, rows): &&(String, Range<usize>)| {
-        let mut terms = system.link_rows[rows.clone()].iter().flatten();
+        let mut terms = system.links.rows[rows.clone()].iter().flatten();
         terms.any(inside)
     };
-    let joining = system.links.iter().filter(joins);
+    let joining = system.links.named.iter().filter(joins);
     Error::FreeMotion {
         body: body_at(system, nodes[0]),
         motion: motion.to_string(),

@@ -7,7 +7,7 @@ use carom_contact::law::Status;
 use carom_nonsmooth::Compliance;
 
 use super::Driver;
-use super::owners::{Attempt, Contacts};
+use super::owners::{Attempt, Contacts, Parts};
 use super::paired::sums_compliances;
 use crate::coulomb::{FrictionFailure, FrictionProblem, Posed, Slip, Tangential};
 use crate::error::Error;
@@ -20,7 +20,7 @@ impl Driver {
         let system = Arc::clone(&self.attempt.system);
         let tangents = system.tangents();
         let width = 1 + tangents as u32;
-        let together = self.is_one_group();
+        let together = self.stages.is_one_group(&self.contacts, &self.attempt);
         let factor = self.attempt.maps.contact();
         let first = self.attempt.maps.first();
         let s = [
@@ -41,7 +41,8 @@ impl Driver {
             compliance.update(points, of.0, of.1, operators);
         }
         let (several, iterate) = (compliance.groups().several(), operators.iterate());
-        self.describe_candidates(Some(tangents as u32));
+        self.contacts
+            .describe_candidates(&self.parts, &self.attempt, Some(tangents as u32));
         let mut friction = Vec::new();
         let interface = &self.attempt.next.interface;
         let last = |number: u32| {
@@ -60,13 +61,20 @@ impl Driver {
         };
         self.contacts.tangential(&self.attempt, free, &mut friction);
         if iterate {
-            let solved = self.find_with_friction(&friction, s);
+            let solved =
+                self.contacts
+                    .find_with_friction(&mut self.parts, &mut self.attempt, &friction, s);
             self.attempt.phases.friction += begin.elapsed();
             solved?;
             return self.take_forces_with_friction(factor);
         }
         if several {
-            let solved = self.solve_groups_with_friction(&friction, s);
+            let solved = self.contacts.solve_groups_with_friction(
+                &mut self.parts,
+                &self.attempt,
+                &friction,
+                s,
+            );
             self.attempt.phases.friction += begin.elapsed();
             solved?;
             return self.take_forces_with_friction(factor);
@@ -176,57 +184,6 @@ impl Driver {
         self.part_links();
         Ok(())
     }
-
-    /// Forces and statuses of candidates in several groups, each solved by itself.
-    fn solve_groups_with_friction(
-        &mut self,
-        friction: &[Tangential],
-        s: [f64; 3],
-    ) -> Result<(), Error> {
-        let Some((_, compliance)) = self.parts.effective.both() else {
-            return Ok(());
-        };
-        let n = self.contacts.candidates.len();
-        let (mut forces, mut tangential) = (vec![0.0; n], vec![[0.0; 2]; n]);
-        let (mut statuses, mut slips) = (vec![Status::Open; n], vec![Slip::Open; n]);
-        let mut failed = None;
-        for (group, range) in compliance.groups().ranges().enumerate() {
-            let places = &compliance.groups().order()[range];
-            let of_place = |&place: &u32| self.contacts.candidate_data[place as usize];
-            let candidates: Vec<Candidate> = places.iter().map(of_place).collect();
-            let of_place = |&place: &u32| friction[place as usize];
-            let own: Vec<Tangential> = places.iter().map(of_place).collect();
-            let block = compliance.block(group);
-            let posed = Posed {
-                candidates: &candidates,
-                friction: &own,
-                tangents: self.attempt.system.tangents(),
-                d: Compliance::Dense(block),
-                s,
-                tolerance: self.attempt.system.nonlinear.iteration.tolerance,
-            };
-            if let Err(failure) = self.contacts.coulomb.solve(&posed) {
-                failed = Some((failure, block.to_vec(), places.to_vec(), own));
-                break;
-            }
-            for (k, &place) in places.iter().enumerate() {
-                let at = place as usize;
-                forces[at] = self.contacts.coulomb.forces[k];
-                tangential[at] = self.contacts.coulomb.tangential[k];
-                statuses[at] = self.contacts.coulomb.statuses[k];
-                slips[at] = self.contacts.coulomb.slips[k];
-            }
-        }
-        if let Some((failure, block, places, own)) = failed {
-            self.contacts.keep_places(&places);
-            self.contacts.keep_failed(&self.attempt, own, block, s);
-            return Err(self.contacts.friction_error(&self.attempt, failure));
-        }
-        let all = &mut self.contacts.coulomb;
-        (all.forces, all.tangential) = (forces, tangential);
-        (all.statuses, all.slips) = (statuses, slips);
-        Ok(())
-    }
 }
 
 impl Contacts {
@@ -291,5 +248,58 @@ impl Contacts {
             point: attempt.name(self.candidates[failure.candidate] as usize),
             cause: failure,
         }
+    }
+
+    /// Forces and statuses of candidates in several groups, each solved by itself.
+    pub(super) fn solve_groups_with_friction(
+        &mut self,
+        parts: &mut Parts,
+        attempt: &Attempt,
+        friction: &[Tangential],
+        s: [f64; 3],
+    ) -> Result<(), Error> {
+        let Some((_, compliance)) = parts.effective.both() else {
+            return Ok(());
+        };
+        let n = self.candidates.len();
+        let (mut forces, mut tangential) = (vec![0.0; n], vec![[0.0; 2]; n]);
+        let (mut statuses, mut slips) = (vec![Status::Open; n], vec![Slip::Open; n]);
+        let mut failed = None;
+        for (group, range) in compliance.groups().ranges().enumerate() {
+            let places = &compliance.groups().order()[range];
+            let of_place = |&place: &u32| self.candidate_data[place as usize];
+            let candidates: Vec<Candidate> = places.iter().map(of_place).collect();
+            let of_place = |&place: &u32| friction[place as usize];
+            let own: Vec<Tangential> = places.iter().map(of_place).collect();
+            let block = compliance.block(group);
+            let posed = Posed {
+                candidates: &candidates,
+                friction: &own,
+                tangents: attempt.system.tangents(),
+                d: Compliance::Dense(block),
+                s,
+                tolerance: attempt.system.nonlinear.iteration.tolerance,
+            };
+            if let Err(failure) = self.coulomb.solve(&posed) {
+                failed = Some((failure, block.to_vec(), places.to_vec(), own));
+                break;
+            }
+            for (k, &place) in places.iter().enumerate() {
+                let at = place as usize;
+                forces[at] = self.coulomb.forces[k];
+                tangential[at] = self.coulomb.tangential[k];
+                statuses[at] = self.coulomb.statuses[k];
+                slips[at] = self.coulomb.slips[k];
+            }
+        }
+        if let Some((failure, block, places, own)) = failed {
+            self.keep_places(&places);
+            self.keep_failed(attempt, own, block, s);
+            return Err(self.friction_error(attempt, failure));
+        }
+        let all = &mut self.coulomb;
+        (all.forces, all.tangential) = (forces, tangential);
+        (all.statuses, all.slips) = (statuses, slips);
+        Ok(())
     }
 }

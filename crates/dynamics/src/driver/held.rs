@@ -2,45 +2,47 @@
 
 use std::sync::Arc;
 
-use super::Driver;
 use super::deletion::as_narrowed;
+use super::owners::{Attempt, Contacts, Parts};
 use crate::error::Error;
 
 /// Error of the gap of a point that stays with a face, over the face's diagonal, beyond which the step fails.
 const STRAYED: f64 = 0.01;
 
-impl Driver {
+impl Contacts {
     /// Tells of the points that the iterations have made stay with a face.
     ///
     /// # Errors
     /// One that has left its face so far that it does not stand for the surface.
-    pub(super) fn check_held(&mut self, passes: usize) -> Result<(), Error> {
-        let system = Arc::clone(&self.attempt.system);
+    pub(super) fn check_held(
+        &self,
+        parts: &Parts,
+        attempt: &mut Attempt,
+        passes: usize,
+    ) -> Result<(), Error> {
+        let system = Arc::clone(&attempt.system);
         for k in 0..system.contacts.len() {
-            let mut u = std::mem::take(&mut self.attempt.vectors.place);
-            let paired = self.contacts.paired_at(k);
-            let xc = [&self.attempt.vectors.x[..], &self.attempt.vectors.push];
-            let motion = &self.attempt.state.motion;
-            self.attempt
+            let mut u = std::mem::take(&mut attempt.vectors.place);
+            let paired = self.paired_at(k);
+            let xc = [&attempt.vectors.x[..], &attempt.vectors.push];
+            let motion = &attempt.state.motion;
+            attempt
                 .maps
                 .whole(|map| paired.row(map), motion, xc, &mut u);
-            let time = self.attempt.state.time + self.contacts.paired_after(&self.attempt, k);
-            let mut places = system.places(time, &u, &self.attempt.state.motion.frames);
-            places.frames.middle = self.attempt.between();
-            let all = as_narrowed(&self.contacts.narrowed, &system, k)
-                .held(&places, &self.contacts.search[k]);
-            self.attempt.vectors.place = u;
+            let time = attempt.state.time + self.paired_after(attempt, k);
+            let mut places = system.places(time, &u, &attempt.state.motion.frames);
+            places.frames.middle = attempt.between();
+            let all = as_narrowed(&self.narrowed, &system, k).held(&places, &self.search[k]);
+            attempt.vectors.place = u;
             for held in all {
-                let name = self
-                    .attempt
-                    .name(system.contacts[k].range.start + held.point);
+                let name = attempt.name(system.contacts[k].range.start + held.point);
                 tracing::debug!(
                     "step {}: {name} alternated between faces and stays with one; the error of its gap is {:.1e} of the face",
-                    self.attempt.state.step + 1,
+                    attempt.state.step + 1,
                     held.error
                 );
                 if held.error.abs() > STRAYED {
-                    return Err(self.strayed(&name, passes));
+                    return Err(self.strayed(parts, attempt, &name, passes));
                 }
             }
         }
@@ -48,8 +50,14 @@ impl Driver {
     }
 
     /// The error of a point that has left the face which it stays with.
-    fn strayed(&self, point: &str, passes: usize) -> Error {
-        let mut error = self.no_equilibrium(passes);
+    pub(super) fn strayed(
+        &self,
+        parts: &Parts,
+        attempt: &Attempt,
+        point: &str,
+        passes: usize,
+    ) -> Error {
+        let mut error = self.no_equilibrium(parts, attempt, passes);
         if let Error::Equilibrium { contact, .. } = &mut error {
             *contact = format!("; {point} slides through the fold between two faces").into();
         }

@@ -57,7 +57,7 @@ impl Driver {
                 .energies_at(&mut self.attempt, End::Finish, self.parts.stored.strain);
         let filtered = self.parts.filtered(&mut self.attempt, &identity);
         let [supports, held] = self.reactions();
-        let stage = self.predictor_loss();
+        let stage = self.stages.predictor_loss(&self.contacts, &self.attempt);
         let (weights, of_links) = (
             self.attempt.work_weights(),
             self.attempt.link_work_weights(0),

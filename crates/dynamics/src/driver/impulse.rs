@@ -55,7 +55,7 @@ impl OfMass {
 impl Impulses {
     pub(super) fn new(system: &System) -> Result<Impulses, Error> {
         let mut operators = Operators::new(system, 1.0, 0.0, "mass matrix")?;
-        let linking = match system.link_rows.is_empty() {
+        let linking = match system.links.rows.is_empty() {
             true => None,
             false => Some(Linking::of_mass(system, &mut operators)?),
         };
@@ -68,7 +68,7 @@ impl Impulses {
                     system.rigid_points(),
                 ),
             },
-            links: vec![0.0; system.link_rows.len()],
+            links: vec![0.0; system.links.rows.len()],
             with_weak: WithWeak::default(),
             interface: Interface::default(),
             candidates: Vec::new(),

@@ -6,7 +6,7 @@ use carom_algebra::Error as AlgebraError;
 use carom_nonsmooth::Compliance as D;
 
 use super::Driver;
-use super::owners::Attempt;
+use super::owners::{Attempt, Contacts, Parts};
 use crate::compliance::Compliance;
 use crate::coulomb::{Posed, Tangential};
 use crate::error::{Error, MeshNode};
@@ -15,17 +15,6 @@ use crate::operator::Operators;
 use carom_system::ContactPair;
 
 impl Driver {
-    /// Whether the motion without contact forces is found together with them: no matrix has a factor, and nobody asks for it alone.
-    pub(super) fn finds_all_at_once(&mut self) -> bool {
-        let system = &*self.attempt.system;
-        let asks = |contact: &ContactPair| contact.law.needs_free_gap();
-        let asked = system.adaptive.is_some() || system.contacts.iter().any(asks);
-        let iterates = |(operators, _): (&mut Operators, &mut Compliance)| operators.iterate();
-        !asked
-            && !self.contacts.candidates.is_empty()
-            && self.parts.effective.both().is_some_and(iterates)
-    }
-
     /// Forces and statuses of the candidates; the motion of the forces is added to the begun solve. `factor`: that of contact forces in the
     /// balance.
     ///
@@ -78,55 +67,6 @@ impl Driver {
         saddle.add_motion(factor, &mut self.attempt.vectors.half);
         self.take_forces(factor)
     }
-
-    /// The same with friction: rows of each candidate are its normal and its tangents. `s`: factors of D p in gaps, rates and sliding.
-    pub(super) fn find_with_friction(
-        &mut self,
-        friction: &[Tangential],
-        s: [f64; 3],
-    ) -> Result<(), Error> {
-        let system = Arc::clone(&self.attempt.system);
-        let (tangents, factor) = (system.tangents(), self.attempt.maps.contact());
-        let width = 1 + tangents as u32;
-        let Some((operators, compliance)) = self.parts.effective.both() else {
-            return Ok(());
-        };
-        let (lent, tolerance) = operators.lend();
-        let numbers = self.contacts.candidates.iter();
-        let numbers = numbers.flat_map(|&point| point * width..(point + 1) * width);
-        let rows = numbers.map(|number| compliance.row(number, operators));
-        let left = &self.attempt.vectors.left;
-        let load = |load: &mut [f64]| {
-            for (load, left) in load.iter_mut().zip(left) {
-                *load = left / factor;
-            }
-        };
-        self.contacts
-            .saddle
-            .get_mut()
-            .begin(lent, rows, (tolerance, load));
-        let posed = Posed {
-            candidates: &self.contacts.candidate_data,
-            friction,
-            tangents,
-            d: D::Iterated(&self.contacts.saddle),
-            s,
-            tolerance: system.nonlinear.iteration.tolerance,
-        };
-        let solved = self.contacts.coulomb.solve(&posed);
-        let saddle = self.contacts.saddle.get_mut();
-        operators.take_back(saddle.end());
-        match (solved, self.contacts.coulomb.cause.take()) {
-            (Ok(()), _) => {}
-            (Err(_), Some(cause @ AlgebraError::Iterations { unknown, .. })) => {
-                let unknown = operators.unknown_at(unknown);
-                return Err(self.attempt.not_solved(unknown, cause));
-            }
-            (Err(failure), _) => return Err(self.contacts.friction_error(&self.attempt, failure)),
-        }
-        saddle.add_motion(factor, &mut self.attempt.vectors.half);
-        Ok(())
-    }
 }
 
 impl Attempt {
@@ -138,5 +78,64 @@ impl Attempt {
             node: MeshNode::of(system, system.unknowns.node(unknown)),
             cause,
         }
+    }
+}
+
+impl Contacts {
+    /// Whether the motion without contact forces is found together with them: no matrix has a factor, and nobody asks for it alone.
+    pub(super) fn finds_all_at_once(&self, parts: &mut Parts, attempt: &Attempt) -> bool {
+        let system = &*attempt.system;
+        let asks = |contact: &ContactPair| contact.law.needs_free_gap();
+        let asked = system.adaptive.is_some() || system.contacts.iter().any(asks);
+        let iterates = |(operators, _): (&mut Operators, &mut Compliance)| operators.iterate();
+        !asked && !self.candidates.is_empty() && parts.effective.both().is_some_and(iterates)
+    }
+
+    /// The same with friction: rows of each candidate are its normal and its tangents. `s`: factors of D p in gaps, rates and sliding.
+    pub(super) fn find_with_friction(
+        &mut self,
+        parts: &mut Parts,
+        attempt: &mut Attempt,
+        friction: &[Tangential],
+        s: [f64; 3],
+    ) -> Result<(), Error> {
+        let system = Arc::clone(&attempt.system);
+        let (tangents, factor) = (system.tangents(), attempt.maps.contact());
+        let width = 1 + tangents as u32;
+        let Some((operators, compliance)) = parts.effective.both() else {
+            return Ok(());
+        };
+        let (lent, tolerance) = operators.lend();
+        let numbers = self.candidates.iter();
+        let numbers = numbers.flat_map(|&point| point * width..(point + 1) * width);
+        let rows = numbers.map(|number| compliance.row(number, operators));
+        let left = &attempt.vectors.left;
+        let load = |load: &mut [f64]| {
+            for (load, left) in load.iter_mut().zip(left) {
+                *load = left / factor;
+            }
+        };
+        self.saddle.get_mut().begin(lent, rows, (tolerance, load));
+        let posed = Posed {
+            candidates: &self.candidate_data,
+            friction,
+            tangents,
+            d: D::Iterated(&self.saddle),
+            s,
+            tolerance: system.nonlinear.iteration.tolerance,
+        };
+        let solved = self.coulomb.solve(&posed);
+        let saddle = self.saddle.get_mut();
+        operators.take_back(saddle.end());
+        match (solved, self.coulomb.cause.take()) {
+            (Ok(()), _) => {}
+            (Err(_), Some(cause @ AlgebraError::Iterations { unknown, .. })) => {
+                let unknown = operators.unknown_at(unknown);
+                return Err(attempt.not_solved(unknown, cause));
+            }
+            (Err(failure), _) => return Err(self.friction_error(attempt, failure)),
+        }
+        saddle.add_motion(factor, &mut attempt.vectors.half);
+        Ok(())
     }
 }

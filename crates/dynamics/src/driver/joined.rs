@@ -138,7 +138,7 @@ impl<'a> Joined<'a> {
                 held.add(self.row(row.iter().copied()));
             });
         }
-        for row in self.system.link_rows.iter() {
+        for row in self.system.links.rows.iter() {
             held.add(self.row(row.iter().map(|&(unknown, c)| (unknown as usize, c))));
         }
         held
@@ -254,7 +254,7 @@ impl<'a> Joined<'a> {
         let node = unknowns.node(unknown);
         match (unknowns.kind(unknown), unknowns.frame(node)) {
             (Kind::Rotation(axis), Some(frame)) => {
-                let (matrix, turn) = (self.system.initial_frames[frame].matrix(), turn_of(mode));
+                let (matrix, turn) = (self.system.initial.frames[frame].matrix(), turn_of(mode));
                 (0..3).map(|i| matrix[(i, axis)] * turn[i]).sum::<f64>() / group.size
             }
             (Kind::Amplitude(_), _) => self.amplitudes.get(&unknown).map_or(0.0, |amplitude| {

@@ -1,6 +1,7 @@
 //! When a driver would end its step: where points in flight are at their lead ([`crate::landing`]).
 
 use super::Driver;
+use super::owners::{Attempt, Contacts, Stages};
 use crate::landing::{arrival, flies, lead};
 use crate::system::{Adaptive, Maps};
 
@@ -21,7 +22,7 @@ impl Driver {
                 let way = [
                     gap,
                     self.contacts.rate_at_start(&self.attempt, point),
-                    self.free_gap(point),
+                    self.stages.free_gap(&self.contacts, &self.attempt, point),
                 ];
                 let arrival = arrival(way, self.attempt.dt, tolerance);
                 let cut = arrival - lead(&maps.all()[zone], planned, law);
@@ -32,15 +33,17 @@ impl Driver {
         }
         first
     }
+}
 
+impl Stages {
     /// Gap of a point at the end of the step without its forces, m.
-    fn free_gap(&self, point: usize) -> f64 {
-        if let Some(gap) = self.stages.predictor.gap(point) {
+    pub(super) fn free_gap(&self, contacts: &Contacts, attempt: &Attempt, point: usize) -> f64 {
+        if let Some(gap) = self.predictor.gap(point) {
             return gap;
         }
-        match self.contacts.candidates.binary_search(&(point as u32)) {
-            Ok(k) => self.contacts.free_gaps[k],
-            Err(_) => self.attempt.next.interface.gap[point],
+        match contacts.candidates.binary_search(&(point as u32)) {
+            Ok(k) => contacts.free_gaps[k],
+            Err(_) => attempt.next.interface.gap[point],
         }
     }
 }

@@ -271,7 +271,7 @@ impl Driver {
         }
         let (begin, before) = (Instant::now(), self.attempt.phases);
         self.parts.take_matrices(&mut self.attempt)?;
-        if self.is_affine() {
+        if self.contacts.is_affine(&self.parts) {
             self.begin_iterations(false)?;
             self.parts.prepared = true;
         }

@@ -160,7 +160,7 @@ pub(super) fn of_mass(
 
 /// Adds Cᵀ L to a system vector, held unknowns included.
 pub(super) fn add_all_forces(system: &System, l: &[f64], force: &mut [f64]) {
-    for (row, l) in system.link_rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
+    for (row, l) in system.links.rows.iter().zip(l).filter(|(_, l)| **l != 0.0) {
         for &(dof, c) in row {
             force[dof as usize] += c * l;
         }
@@ -197,7 +197,7 @@ impl Linking {
     /// Rows that say the same twice.
     pub(super) fn of_mass(system: &System, operators: &mut Operators) -> Result<Linking, Error> {
         let factors = vec![[1.0; 2]; system.parts.len()];
-        let rows = Arc::clone(&system.link_rows);
+        let rows = Arc::clone(&system.links.rows);
         let condensed = of_mass((system, &rows), operators)?;
         Ok(Linking::with(condensed, factors, (system, rows), 0))
     }
@@ -432,7 +432,7 @@ pub(super) struct Multipliers {
 
 impl Multipliers {
     pub(super) fn new(system: &System) -> Multipliers {
-        let zeros = || vec![0.0; system.link_rows.len()];
+        let zeros = || vec![0.0; system.links.rows.len()];
         Multipliers {
             now: zeros(),
             change: [zeros(), zeros()],

@@ -5,55 +5,20 @@ use std::sync::Arc;
 use super::Driver;
 use super::identity::WorkWeights;
 use super::linking::{Multipliers, add_forces, of_mass};
-use super::owners::{Attempt, Links};
+use super::owners::{Attempt, Links, Parts};
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::state;
 use crate::system::{LinkRow, on};
 
 impl Driver {
-    /// Holds the rows in the begun solve, without what contact forces change in it.
-    pub(super) fn hold_links(&mut self) {
-        if !self.attempt.has_links() {
-            return;
-        }
-        let bent = self.attempt.bent_rows();
-        let (system, maps) = (Arc::clone(&self.attempt.system), &self.attempt.maps);
-        let (motion, vectors) = (&self.attempt.state.motion, &mut self.attempt.vectors);
-        let of_row = |row: &LinkRow| -> f64 {
-            let term = |&(dof, c): &(u32, f64)| {
-                let i = dof as usize;
-                let row = maps.link_row(maps.of(i));
-                let known = row.u * motion.u[i] + row.v * motion.v[i] + row.a * motion.a[i];
-                c * (known + row.x * (vectors.x[i] + vectors.jump[i]))
-            };
-            row.iter().map(term).sum()
-        };
-        let Multipliers {
-            change: [free, pushed],
-            defect,
-            ..
-        } = &mut self.links.multipliers;
-        for (defect, row) in defect.iter_mut().zip(self.links.rows.iter()) {
-            *defect = of_row(row);
-        }
-        for (row, h) in bent {
-            defect[row] = h;
-        }
-        pushed.fill(0.0);
-        if let Some((operators, _, Some(linking))) = self.parts.effective.all() {
-            let forces = (&mut vectors.work[..], &mut vectors.half[..]);
-            linking.hold(&system, operators, forces, (defect, free));
-        }
-    }
-
     /// What contact forces give by themselves keeps the rows of links by multipliers of its own, which are among the contact forces:
     /// takes them from the change of the others.
     pub(super) fn part_links(&mut self) {
         if self.attempt.vectors.push.is_empty() || !self.attempt.has_links() {
             return;
         }
-        self.spread();
+        self.stages.spread(&self.contacts, &mut self.attempt);
         // schemes in which forces give accelerations by themselves stand alone
         let part = self.attempt.maps.contact() / self.attempt.maps.link_weights(0)[1];
         if let Some(stage) = &self.stages.impulses {
@@ -84,7 +49,7 @@ impl Driver {
             );
             let next = &mut self.attempt.next.links;
             let own = |i: usize| system.zone_at(i) == zone;
-            for (link, (_, rows)) in system.links.iter().enumerate() {
+            for (link, (_, rows)) in system.links.named.iter().enumerate() {
                 for row in rows.clone() {
                     let [l, mixed] = [old.multipliers[row], old.mixed[zone][row]];
                     let now = weights[0] * l + weights[1] * next.multipliers[row];
@@ -92,7 +57,7 @@ impl Driver {
                     // those of the rows at the start of the step, and at its end
                     let earlier = of_work.old * mixed + of_work.new * weights[0] * l;
                     let later = of_work.new * weights[1] * next.multipliers[row];
-                    let (terms, inner) = (&self.links.rows[row], system.inner_terms[row]);
+                    let (terms, inner) = (&self.links.rows[row], system.links.inner_terms[row]);
                     let sides = [0..inner, inner..terms.len()];
                     for (work, side) in next.works[link].iter_mut().zip(sides) {
                         let side = side.filter(|&k| own(terms[k].0 as usize));
@@ -131,6 +96,7 @@ impl Driver {
             .attempt
             .system
             .links
+            .named
             .iter()
             .zip(&self.attempt.state.links.works);
         links.map(|((name, rows), work)| (name.as_str(), rows.len(), *work))
@@ -140,7 +106,7 @@ impl Driver {
 impl Attempt {
     /// Whether the system has links of its own.
     pub(super) fn has_links(&self) -> bool {
-        !self.system.link_rows.is_empty()
+        !self.system.links.rows.is_empty()
     }
 
     /// Weights of the forces of links at the start and of the step in their work in a zone: those of the ledger.
@@ -264,5 +230,40 @@ impl Links {
         links.mixed.fill(l.clone());
         links.multipliers = l;
         Ok(())
+    }
+
+    /// Holds the rows in the begun solve, without what contact forces change in it.
+    pub(super) fn hold_links(&mut self, parts: &mut Parts, attempt: &mut Attempt) {
+        if !attempt.has_links() {
+            return;
+        }
+        let bent = attempt.bent_rows();
+        let (system, maps) = (Arc::clone(&attempt.system), &attempt.maps);
+        let (motion, vectors) = (&attempt.state.motion, &mut attempt.vectors);
+        let of_row = |row: &LinkRow| -> f64 {
+            let term = |&(dof, c): &(u32, f64)| {
+                let i = dof as usize;
+                let row = maps.link_row(maps.of(i));
+                let known = row.u * motion.u[i] + row.v * motion.v[i] + row.a * motion.a[i];
+                c * (known + row.x * (vectors.x[i] + vectors.jump[i]))
+            };
+            row.iter().map(term).sum()
+        };
+        let Multipliers {
+            change: [free, pushed],
+            defect,
+            ..
+        } = &mut self.multipliers;
+        for (defect, row) in defect.iter_mut().zip(self.rows.iter()) {
+            *defect = of_row(row);
+        }
+        for (row, h) in bent {
+            defect[row] = h;
+        }
+        pushed.fill(0.0);
+        if let Some((operators, _, Some(linking))) = parts.effective.all() {
+            let forces = (&mut vectors.work[..], &mut vectors.half[..]);
+            linking.hold(&system, operators, forces, (defect, free));
+        }
     }
 }

@@ -3,7 +3,7 @@
 use carom_contact::Target;
 
 use super::Driver;
-use super::owners::{Attempt, Contacts};
+use super::owners::{Attempt, Balances, Contacts};
 use crate::records::Pushed;
 
 impl Driver {
@@ -21,20 +21,6 @@ impl Driver {
         };
         let works = (0..self.attempt.system.contacts.len()).filter_map(of);
         self.attempt.contact_factor() * works.sum::<f64>()
-    }
-
-    /// Writes the work of each obstacle in the step, J, of what was reported of the contacts.
-    pub(super) fn work_of_obstacles(&mut self) {
-        let mut works = std::mem::take(&mut self.balances.works.obstacles);
-        works.clear();
-        for (contact, of) in self.contacts.of_contacts.iter().enumerate() {
-            let impulse =
-                &self.attempt.maps.all()[self.attempt.system.zone_of(contact)].contact_impulse;
-            let weights = [impulse.old, impulse.new];
-            let work = self.attempt.work_of_obstacle(contact, weights, of.pushed);
-            works.push(work.map_or(0.0, |work| self.attempt.contact_factor() * work));
-        }
-        self.balances.works.obstacles = works;
     }
 }
 
@@ -103,4 +89,19 @@ impl Attempt {
 
 fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+impl Balances {
+    /// Writes the work of each obstacle in the step, J, of what was reported of the contacts.
+    pub(super) fn work_of_obstacles(&mut self, contacts: &Contacts, attempt: &Attempt) {
+        let mut works = std::mem::take(&mut self.works.obstacles);
+        works.clear();
+        for (contact, of) in contacts.of_contacts.iter().enumerate() {
+            let impulse = &attempt.maps.all()[attempt.system.zone_of(contact)].contact_impulse;
+            let weights = [impulse.old, impulse.new];
+            let work = attempt.work_of_obstacle(contact, weights, of.pushed);
+            works.push(work.map_or(0.0, |work| attempt.contact_factor() * work));
+        }
+        self.works.obstacles = works;
+    }
 }

@@ -6,7 +6,8 @@ use std::sync::Arc;
 use carom_algebra::Interrupt;
 use carom_algebra::solver::Saddle;
 use carom_bodies::{Scratch, Stored};
-use carom_contact::{Contact, Pairing, Search};
+use carom_contact::{Contact, Pairing, Rows, Search};
+use carom_system::ContactPair;
 
 use super::active::Active;
 use super::carried::Carried;
@@ -18,7 +19,7 @@ use super::impulse::Impulses;
 use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
-use super::paired::Manner;
+use super::paired::{Manner, sums_compliances};
 use super::passage::Passage;
 use super::rebound::Rebound;
 use super::refined::Refined;
@@ -27,6 +28,7 @@ use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
 use crate::costs::Phases;
 use crate::coulomb::{Coulomb, FrictionProblem, Slip};
+use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
 use crate::of_contact::OfContact;
 use crate::report::Notices;
@@ -34,7 +36,7 @@ use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::shapes::Rates;
 use crate::shared::Shared;
-use crate::state::State;
+use crate::state::{State, state_without_motion};
 use crate::system::{LinkRow, Maps, System};
 
 /// Contacts: search, pairing, points that may carry a force, their laws, the problems of forces and friction, what they did.
@@ -72,7 +74,7 @@ pub(super) struct Contacts {
     pub(super) weak: WeakForms,
     pub(super) with_weak: WithWeak,
     /// Normal and tangential rows of all points, point after point, where there is friction; of steps with iterations.
-    pub(super) stacked: carom_contact::Rows,
+    pub(super) stacked: Rows,
     pub(super) slips: Vec<Slip>,
     pub(super) failed: Option<InterfaceProblem>,
     pub(super) failed_friction: Option<FrictionProblem>,
@@ -82,6 +84,46 @@ pub(super) struct Contacts {
     pub(super) nodal: Vec<f64>,
 }
 
+impl Contacts {
+    /// Those of a system.
+    ///
+    /// # Errors
+    /// A weak form that is not positive definite.
+    pub(super) fn of(system: &System) -> Result<Contacts, Error> {
+        Ok(Contacts {
+            manners: Vec::new(),
+            turns: false,
+            by_rate: false,
+            interface: Interface::default(),
+            interfaces: Vec::new(),
+            saddle: RefCell::default(),
+            pairing: Pairing::default(),
+            initial: vec![Pairing::default(); system.contacts.len()],
+            search: system.contacts.iter().map(|_| Search::default()).collect(),
+            narrowed: Vec::new(),
+            narrowed_for: 0,
+            active: Active::of(system),
+            passage: Passage::of(system),
+            far: Far::of(system, |_| true),
+            closings: Closings::of(system),
+            rebound: Rebound::of(system),
+            candidates: Vec::new(),
+            candidate_data: Vec::new(),
+            free_gaps: Vec::new(),
+            coulomb: Coulomb::default(),
+            weak: WeakForms::new(system)?,
+            with_weak: WithWeak::default(),
+            stacked: Rows::default(),
+            slips: Vec::new(),
+            failed: None,
+            failed_friction: None,
+            of_contacts: Vec::new(),
+            nodal: Vec::new(),
+            rows_stand: false,
+        })
+    }
+}
+
 /// Stages of a step with the mass alone: impulses of contact points, what a predictor and a projection change.
 pub(super) struct Stages {
     /// Solver of the stages with the mass alone; none where there is no such stage.
@@ -89,6 +131,32 @@ pub(super) struct Stages {
     pub(super) projected: Projected,
     pub(super) predictor: Predictor,
     pub(super) restoring: Restoring,
+}
+
+impl Stages {
+    /// Those of a system, which is `released` in the dynamics.
+    ///
+    /// # Errors
+    /// A mass that is not positive definite.
+    pub(super) fn of(system: &System, released: &System) -> Result<Stages, Error> {
+        let (scheme, points) = (system.scheme.get(), system.points());
+        let map = scheme.step_map(system.dt);
+        let projects = |contact: &ContactPair| contact.law.projects();
+        let stages = scheme.projects_predictor()
+            || scheme.restores_contact_work()
+            || sums_compliances(system, &map)
+            || map.uses_contact_acceleration() && !system.links.rows.is_empty();
+        let staged = stages && points > 0 || system.contacts.iter().any(projects);
+        Ok(Stages {
+            impulses: match staged {
+                true => Some(Impulses::new(released)?),
+                false => None,
+            },
+            projected: Projected::new(points),
+            predictor: Predictor::default(),
+            restoring: Restoring::default(),
+        })
+    }
 }
 
 /// Connected parts: matrices and factors, forces and histories of the bodies, residual and iterations.
@@ -114,6 +182,30 @@ pub(super) struct Parts {
     pub(super) left_over: f64,
 }
 
+impl Parts {
+    /// Those of a system.
+    ///
+    /// # Errors
+    /// A static stage of a body that neither supports nor contacts could hold.
+    pub(super) fn of(system: &System) -> Result<Parts, Error> {
+        Ok(Parts {
+            effective: Effective::new(),
+            floating: Floating::new(system)?,
+            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+            force_sweeps: 0,
+            residuals: Vec::new(),
+            pace: Pace::default(),
+            mixing: Mixing::default(),
+            refined: Refined::default(),
+            carried: Carried::default(),
+            squares: Vec::new(),
+            stored: Stored::default(),
+            prepared: false,
+            left_over: 0.0,
+        })
+    }
+}
+
 /// Links between zones and within a model: rows and multipliers.
 pub(super) struct Links {
     /// Forces of links in the step, N; empty without links.
@@ -121,6 +213,21 @@ pub(super) struct Links {
     pub(super) multipliers: Multipliers,
     /// The rows of the links; those that turn as they are in the iteration.
     pub(super) rows: Arc<Vec<LinkRow>>,
+}
+
+impl Links {
+    /// Those of a system.
+    pub(super) fn of(system: &System) -> Links {
+        let unknowns = match system.links.rows.is_empty() {
+            true => 0,
+            false => system.unknowns(),
+        };
+        Links {
+            force: vec![0.0; unknowns],
+            multipliers: Multipliers::new(system),
+            rows: Arc::clone(&system.links.rows),
+        }
+    }
 }
 
 /// Explicit steps in one pass over the lumped mass.
@@ -131,6 +238,7 @@ pub(super) struct Explicit {
 }
 
 /// What this process has of a run that several compute.
+#[derive(Default)]
 pub(super) struct RankWork {
     /// What this process has of a run that several compute; none of one process.
     pub(super) shared: Option<Box<Shared>>,
@@ -141,6 +249,7 @@ pub(super) struct RankWork {
 }
 
 /// What the balance of a step is made of, and forces of supports.
+#[derive(Default)]
 pub(super) struct Balances {
     pub(super) jump: Jump,
     /// Forces of the named supports in the last attempt.
@@ -166,4 +275,31 @@ pub(super) struct Attempt {
     pub(super) notices: Notices,
     pub(super) vectors: Vectors,
     pub(super) phases: Phases,
+}
+
+impl Attempt {
+    /// The first one of a system.
+    pub(super) fn of(system: Arc<System>) -> Attempt {
+        let maps = Maps::new(&system, system.dt, system.dt);
+        let pushed = match maps.first().uses_contact_acceleration() {
+            true => system.unknowns(),
+            false => 0,
+        };
+        Attempt {
+            dt: 0.0,
+            maps,
+            sized: None,
+            identity: None,
+            interrupt: Interrupt::default(),
+            notices: Notices::default(),
+            vectors: Vectors {
+                push: vec![0.0; pushed],
+                ..Vectors::default()
+            },
+            next: state_without_motion(&system),
+            state: state_without_motion(&system),
+            phases: Phases::default(),
+            system,
+        }
+    }
 }

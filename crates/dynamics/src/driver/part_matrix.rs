@@ -53,7 +53,7 @@ pub(super) fn rows_of_part(
         mass.add_to(rate, part, part.start, &mut a);
     }
     if map.inertia.x == 0.0 {
-        add_rows((system, &system.link_rows), part, part.start, &mut a);
+        add_rows((system, &system.links.rows), part, part.start, &mut a);
     }
     a
 }

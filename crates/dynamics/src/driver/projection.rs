@@ -16,6 +16,7 @@ use carom_contact::law::Status;
 
 use super::identity::energies;
 use super::linking::add_all_forces;
+use super::owners::{Attempt, Contacts, Stages};
 use super::scratch::Projected;
 use super::{Driver, Vectors};
 use crate::error::Error;
@@ -30,27 +31,24 @@ impl Driver {
         self.stages.projected.clear();
         if self.stages.impulses.is_none()
             || self.attempt.maps.is_static()
-            || !self.projected_points()
+            || !self.stages.projected_points(&self.contacts, &self.attempt)
         {
             return Ok(());
         }
         let identity = self.attempt.identity_of_ledger();
         let mut jump = Jump {
-            impulses: self.project_velocity()?,
+            impulses: self
+                .stages
+                .project_velocity(&self.contacts, &mut self.attempt)?,
             ..Jump::default()
         };
-        (jump.work, jump.work_obstacles) = self.works_of_impulses();
-        jump.dissipation = -identity.inertia * self.project_acceleration()?;
+        (jump.work, jump.work_obstacles) = self.stages.works_of_impulses(&self.contacts);
+        jump.dissipation = -identity.inertia
+            * self
+                .stages
+                .project_acceleration(&self.contacts, &mut self.attempt)?;
         self.enter_jump(jump);
         Ok(())
-    }
-
-    /// Works of the impulses after the step, J: on the motion relative to obstacles, and of the obstacles.
-    pub(super) fn works_of_impulses(&self) -> (f64, f64) {
-        let (projected, rows) = (&self.stages.projected, &self.contacts.pairing.rows);
-        let points = projected.points.iter().map(|&point| point as usize);
-        let of_obstacle = |point: usize| -projected.impulse(point) * rows.rate(point);
-        (projected.work.iter().sum(), points.map(of_obstacle).sum())
     }
 
     /// Enters a jump of the motion after the step into the ledger.
@@ -128,16 +126,25 @@ impl Driver {
         jump.links = Resultant::of(&system, half);
         self.attempt.next.ledger.jump(&identity, &energies, &jump);
     }
+}
+
+impl Stages {
+    /// Works of the impulses after the step, J: on the motion relative to obstacles, and of the obstacles.
+    pub(super) fn works_of_impulses(&self, contacts: &Contacts) -> (f64, f64) {
+        let (projected, rows) = (&self.projected, &contacts.pairing.rows);
+        let points = projected.points.iter().map(|&point| point as usize);
+        let of_obstacle = |point: usize| -projected.impulse(point) * rows.rate(point);
+        (projected.work.iter().sum(), points.map(of_obstacle).sum())
+    }
 
     /// Lists the closed points of laws with projection; whether any of them has just closed.
-    fn projected_points(&mut self) -> bool {
-        let points = &mut self.stages.projected.points;
-        let [before, now] =
-            [&self.attempt.state, &self.attempt.next].map(|state| &state.interface.status);
+    pub(super) fn projected_points(&mut self, contacts: &Contacts, attempt: &Attempt) -> bool {
+        let points = &mut self.projected.points;
+        let [before, now] = [&attempt.state, &attempt.next].map(|state| &state.interface.status);
         let mut closing = false;
-        for &point in &self.contacts.candidates {
+        for &point in &contacts.candidates {
             let at = point as usize;
-            if now[at] != Status::Open && self.attempt.system.point(at).0.law.projects() {
+            if now[at] != Status::Open && attempt.system.point(at).0.law.projects() {
                 points.push(point);
                 closing |= before[at] == Status::Open;
             }
@@ -146,35 +153,40 @@ impl Driver {
     }
 
     /// Projects the velocity; impulses on the momentum from contacts, supports and links.
-    fn project_velocity(&mut self) -> Result<OutsideForces<Resultant>, Error> {
-        let weights = self.attempt.maps.first().contact_impulse;
-        let [old, new] = [&self.attempt.state, &self.attempt.next].map(|state| &state.interface);
-        let rows = &self.contacts.pairing.rows;
-        let projected = &mut self.stages.projected;
+    pub(super) fn project_velocity(
+        &mut self,
+        contacts: &Contacts,
+        attempt: &mut Attempt,
+    ) -> Result<OutsideForces<Resultant>, Error> {
+        let weights = attempt.maps.first().contact_impulse;
+        let [old, new] = [&attempt.state, &attempt.next].map(|state| &state.interface);
+        let rows = &contacts.pairing.rows;
+        let projected = &mut self.projected;
         projected.values.clear();
         projected.present.clear();
         for &point in &projected.points {
             let at = point as usize;
-            let rate = rows.product(at, &self.attempt.next.motion.v) + rows.rate(at);
+            let rate = rows.product(at, &attempt.next.motion.v) + rows.rate(at);
             projected.values.push(rate);
             let mean = weights.old * old.carried[at] + weights.new * new.force[at];
-            projected.present.push(self.attempt.dt * mean);
+            projected.present.push(attempt.dt * mean);
         }
-        self.solve_impulses()?;
-        Ok(self.jump_velocity())
+        self.solve_impulses(contacts, attempt)?;
+        Ok(self.jump_velocity(contacts, attempt))
     }
 
     /// Adds what the impulses of the stage change in the velocity, from the rates in `values`; impulses on the momentum from
     /// contacts, supports and links.
-    pub(super) fn jump_velocity(&mut self) -> OutsideForces<Resultant> {
-        let system = Arc::clone(&self.attempt.system);
-        let Some(stage) = &self.stages.impulses else {
+    pub(super) fn jump_velocity(
+        &mut self,
+        contacts: &Contacts,
+        attempt: &mut Attempt,
+    ) -> OutsideForces<Resultant> {
+        let system = Arc::clone(&attempt.system);
+        let Some(stage) = &self.impulses else {
             return OutsideForces::default();
         };
-        let (motion, interface) = (
-            &mut self.attempt.next.motion,
-            &mut self.attempt.next.interface,
-        );
+        let (motion, interface) = (&mut attempt.next.motion, &mut attempt.next.interface);
         for (v, change) in motion.v.iter_mut().zip(&stage.change) {
             *v += change;
         }
@@ -183,9 +195,9 @@ impl Driver {
             work,
             half,
             ..
-        } = &mut self.attempt.vectors;
+        } = &mut attempt.vectors;
         known.fill(0.0);
-        let (projected, rows) = (&mut self.stages.projected, &self.contacts.pairing.rows);
+        let (projected, rows) = (&mut self.projected, &contacts.pairing.rows);
         for (k, &point) in projected.points.iter().enumerate() {
             let at = point as usize;
             let impulse = stage.added[k];
@@ -211,7 +223,7 @@ impl Driver {
         for (own, link) in work.iter_mut().zip(half) {
             *own += *link;
         }
-        self.attempt.next.exchange.jump(&system, work);
+        attempt.next.exchange.jump(&system, work);
         OutsideForces {
             contacts: contact,
             supports,
@@ -221,9 +233,13 @@ impl Driver {
     }
 
     /// Projects the acceleration and the force that the next step begins with; change of |a|²_M.
-    fn project_acceleration(&mut self) -> Result<f64, Error> {
-        let projected = &mut self.stages.projected;
-        let Some(stage) = &self.stages.impulses else {
+    pub(super) fn project_acceleration(
+        &mut self,
+        contacts: &Contacts,
+        attempt: &mut Attempt,
+    ) -> Result<f64, Error> {
+        let projected = &mut self.projected;
+        let Some(stage) = &self.impulses else {
             return Ok(0.0);
         };
         projected.values.clear();
@@ -232,30 +248,21 @@ impl Driver {
             let at = point as usize;
             // points that the projection lets go have no acceleration to lose: their force ends with the step
             projected.values.push(match stage.active[k] {
-                true => self
-                    .contacts
-                    .pairing
-                    .rows
-                    .product(at, &self.attempt.next.motion.a),
+                true => contacts.pairing.rows.product(at, &attempt.next.motion.a),
                 false => f64::INFINITY,
             });
-            projected
-                .present
-                .push(self.attempt.next.interface.force[at]);
+            projected.present.push(attempt.next.interface.force[at]);
         }
-        self.solve_impulses()?;
-        let Some(stage) = &self.stages.impulses else {
+        self.solve_impulses(contacts, attempt)?;
+        let Some(stage) = &self.impulses else {
             return Ok(0.0);
         };
-        let (motion, interface) = (
-            &mut self.attempt.next.motion,
-            &mut self.attempt.next.interface,
-        );
-        let Vectors { place: known, .. } = &mut self.attempt.vectors;
+        let (motion, interface) = (&mut attempt.next.motion, &mut attempt.next.interface);
+        let Vectors { place: known, .. } = &mut attempt.vectors;
         known.fill(0.0);
-        for (k, &point) in self.stages.projected.points.iter().enumerate() {
+        for (k, &point) in self.projected.points.iter().enumerate() {
             interface.carried[point as usize] += stage.added[k];
-            self.contacts
+            contacts
                 .pairing
                 .rows
                 .add_force(point as usize, stage.added[k], known);
@@ -268,36 +275,37 @@ impl Driver {
             *f += change;
         }
         if !stage.links.is_empty() {
-            self.stages.projected.links.extend_from_slice(&stage.links);
-            add_all_forces(&self.attempt.system, &stage.links, &mut motion.link_force);
+            self.projected.links.extend_from_slice(&stage.links);
+            add_all_forces(&attempt.system, &stage.links, &mut motion.link_force);
         }
         // a vanishes at the supports, so that |a'|²_M - |a|²_M = Nᵀ Q · (a + a')
         Ok(before + dot(known, &motion.a))
     }
 
-    fn solve_impulses(&mut self) -> Result<(), Error> {
+    pub(super) fn solve_impulses(
+        &mut self,
+        contacts: &Contacts,
+        attempt: &Attempt,
+    ) -> Result<(), Error> {
         let Projected {
             points,
             values,
             present,
             ..
-        } = &self.stages.projected;
-        let Some(stage) = &mut self.stages.impulses else {
+        } = &self.projected;
+        let Some(stage) = &mut self.impulses else {
             return Ok(());
         };
         // laws with projection have no weak form: the ratio of impulse and force enters nothing
-        let weak = (&self.contacts.weak, 1.0);
+        let weak = (&contacts.weak, 1.0);
         let solved = stage.solve(
-            &self.attempt.system,
+            &attempt.system,
             weak,
-            &self.contacts.pairing.rows,
+            &contacts.pairing.rows,
             points,
             values,
             present,
         );
-        solved.map_err(|failure| {
-            self.attempt
-                .interface_error(failure, &self.stages.projected.points)
-        })
+        solved.map_err(|failure| attempt.interface_error(failure, &self.projected.points))
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use carom_contact::Rows;
 
 use super::Driver;
-use super::owners::{Attempt, Contacts};
+use super::owners::{Attempt, Balances, Contacts};
 use crate::assembly_energy::{PartMotion, balance_taken};
 use crate::exchange::sum;
 use crate::moment::moment;
@@ -29,65 +29,10 @@ impl Driver {
             let records = &self.attempt.next.records.contacts;
             let momenta = |part: usize| sum(&system, &system.parts[part], work);
             self.attempt.next.exchange.close(&system, momenta, records);
-            self.balance_assemblies();
+            self.balances
+                .balance_assemblies(&self.contacts, &mut self.attempt);
         }
         self.look_at_the_end();
-    }
-
-    /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
-    fn balance_assemblies(&mut self) {
-        self.work_of_obstacles();
-        let inertia = self.attempt.inertia_of_identity();
-        let system = Arc::clone(&self.attempt.system);
-        let system = &*system;
-        let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
-        let (vectors, given) = (&mut self.attempt.vectors, &self.balances.works.given);
-        if inertia != 0.0 {
-            system.mass.multiply(&new.a, &mut vectors.half);
-        }
-        let has_damping = system.has_damping();
-        let part = |number: usize| {
-            let sum = |of: &dyn Fn(usize) -> f64| system.parts[number].clone().map(of).sum::<f64>();
-            let mut motion = motion_of(
-                system,
-                number,
-                ([&old.u, &old.internal_force], new),
-                &vectors.work,
-            );
-            if has_damping {
-                motion.damped = sum(&|i| vectors.damping[i] * (new.u[i] - old.u[i]));
-            }
-            if inertia != 0.0 {
-                motion.of_scheme = inertia * sum(&|i| vectors.half[i] * new.a[i]);
-            }
-            motion.given = given.get(number).copied().unwrap_or(0.0);
-            motion
-        };
-        let motions: &mut Vec<PartMotion> = &mut self.balances.works.motions;
-        motions.clear();
-        motions.extend((0..system.parts.len()).map(part));
-        let motions = std::mem::take(motions);
-        self.add_to_assemblies(motions);
-    }
-
-    /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part.
-    pub(super) fn add_to_assemblies(&mut self, mut motions: Vec<PartMotion>) {
-        let internal = |state: &State| state.ledger.balance.internal();
-        if self.attempt.system.is_nonlinear() {
-            balance_taken(
-                &mut motions,
-                internal(&self.attempt.next) - internal(&self.attempt.state),
-            );
-        }
-        let assemblies = &mut self.attempt.next.assemblies;
-        assemblies.follow(&self.attempt.state.assemblies);
-        let records = &self.attempt.next.records.contacts[..];
-        assemblies.add(
-            &self.attempt.system,
-            &motions,
-            (records, &self.balances.works.obstacles),
-        );
-        self.balances.works.motions = motions;
     }
 
     /// What the points of the contacts did in the step: those that this process has.
@@ -418,4 +363,62 @@ pub fn contact_report(
     }
     report.normal = report.resultant;
     report
+}
+
+impl Balances {
+    /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
+    pub(super) fn balance_assemblies(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
+        self.work_of_obstacles(contacts, attempt);
+        let inertia = attempt.inertia_of_identity();
+        let system = Arc::clone(&attempt.system);
+        let system = &*system;
+        let (old, new) = (&attempt.state.motion, &attempt.next.motion);
+        let (vectors, given) = (&mut attempt.vectors, &self.works.given);
+        if inertia != 0.0 {
+            system.mass.multiply(&new.a, &mut vectors.half);
+        }
+        let has_damping = system.has_damping();
+        let part = |number: usize| {
+            let sum = |of: &dyn Fn(usize) -> f64| system.parts[number].clone().map(of).sum::<f64>();
+            let mut motion = motion_of(
+                system,
+                number,
+                ([&old.u, &old.internal_force], new),
+                &vectors.work,
+            );
+            if has_damping {
+                motion.damped = sum(&|i| vectors.damping[i] * (new.u[i] - old.u[i]));
+            }
+            if inertia != 0.0 {
+                motion.of_scheme = inertia * sum(&|i| vectors.half[i] * new.a[i]);
+            }
+            motion.given = given.get(number).copied().unwrap_or(0.0);
+            motion
+        };
+        let motions: &mut Vec<PartMotion> = &mut self.works.motions;
+        motions.clear();
+        motions.extend((0..system.parts.len()).map(part));
+        let motions = std::mem::take(motions);
+        self.add_to_assemblies(attempt, motions);
+    }
+
+    /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part.
+    pub(super) fn add_to_assemblies(
+        &mut self,
+        attempt: &mut Attempt,
+        mut motions: Vec<PartMotion>,
+    ) {
+        let internal = |state: &State| state.ledger.balance.internal();
+        if attempt.system.is_nonlinear() {
+            balance_taken(
+                &mut motions,
+                internal(&attempt.next) - internal(&attempt.state),
+            );
+        }
+        let assemblies = &mut attempt.next.assemblies;
+        assemblies.follow(&attempt.state.assemblies);
+        let records = &attempt.next.records.contacts[..];
+        assemblies.add(&attempt.system, &motions, (records, &self.works.obstacles));
+        self.works.motions = motions;
+    }
 }

@@ -40,18 +40,6 @@ pub(super) const WITHIN: f64 = 0.01;
 const STALLED: f64 = 0.9;
 
 impl Driver {
-    /// Whether the problem of an iteration is solved with bodies alone linearised.
-    pub(super) fn refines(&self) -> bool {
-        let turns = |&point: &u32| {
-            let contact = self.attempt.system.contact_of(point as usize);
-            self.contacts.turning(contact) != 0.0
-                && self.attempt.system.contacts[contact].sliding == Sliding::Finite
-        };
-        self.parts.effective.has_whole_tangent()
-            && self.parts.may_refine(&self.attempt)
-            && (self.attempt.between() || self.contacts.candidates.iter().any(turns))
-    }
-
     /// Makes the motion `dx` of the iteration and the contact forces after it those of the problem with bodies alone linearised.
     ///
     /// # Errors
@@ -93,7 +81,7 @@ impl Driver {
             refined.before.clone_from(&refined.motion);
             refined.interface.clone_from(&self.attempt.next.interface);
             refined.slips.clone_from(&self.contacts.slips);
-            self.load_pass();
+            self.contacts.load_pass(&mut self.parts, &mut self.attempt);
             self.solve_with_columns()?;
             let way = (
                 &self.attempt.vectors.x[..],
@@ -127,48 +115,6 @@ impl Driver {
         }
         self.contacts.pair_candidates(&mut self.attempt);
         self.standing()
-    }
-
-    /// Forces of a pass without those of its contacts along N(x), into `work`.
-    fn load_pass(&mut self) {
-        let factor = self.attempt.maps.contact();
-        let vectors = &mut self.attempt.vectors;
-        for (work, (r, contact)) in vectors
-            .work
-            .iter_mut()
-            .zip(vectors.residual.iter().zip(&vectors.contact))
-        {
-            *work = r + factor * contact;
-        }
-        self.take_column_forces(-factor);
-        let System { fixed, .. } = &*self.attempt.system;
-        for (work, fixed) in self.attempt.vectors.work.iter_mut().zip(fixed) {
-            if *fixed {
-                *work = 0.0;
-            }
-        }
-    }
-
-    /// Adds the forces of the candidates along the rows of their columns, times `factor`, to `work`.
-    fn take_column_forces(&mut self, factor: f64) {
-        let width = 1 + match self.contacts.rubs(&self.attempt) {
-            true => self.attempt.system.tangents() as u32,
-            false => 0,
-        };
-        let Some((_, compliance)) = self.parts.effective.both() else {
-            return;
-        };
-        let interface = &self.attempt.next.interface;
-        for &point in &self.contacts.candidates {
-            let at = point as usize;
-            let t = interface.friction.get(at).copied().unwrap_or_default();
-            let forces = [interface.force[at], t[0], t[1]];
-            for (row, force) in (point * width..(point + 1) * width).zip(forces) {
-                if force != 0.0 {
-                    compliance.add_force(row, factor * force, &mut self.attempt.vectors.work);
-                }
-            }
-        }
     }
 }
 
@@ -247,5 +193,59 @@ impl Contacts {
             contact.pair_again(&places, search, (&own, first), &mut self.pairing);
         }
         self.stack(attempt);
+    }
+
+    /// Whether the problem of an iteration is solved with bodies alone linearised.
+    pub(super) fn refines(&self, parts: &Parts, attempt: &Attempt) -> bool {
+        let turns = |&point: &u32| {
+            let contact = attempt.system.contact_of(point as usize);
+            self.turning(contact) != 0.0
+                && attempt.system.contacts[contact].sliding == Sliding::Finite
+        };
+        parts.effective.has_whole_tangent()
+            && parts.may_refine(attempt)
+            && (attempt.between() || self.candidates.iter().any(turns))
+    }
+
+    /// Forces of a pass without those of its contacts along N(x), into `work`.
+    pub(super) fn load_pass(&self, parts: &mut Parts, attempt: &mut Attempt) {
+        let factor = attempt.maps.contact();
+        let vectors = &mut attempt.vectors;
+        for (work, (r, contact)) in vectors
+            .work
+            .iter_mut()
+            .zip(vectors.residual.iter().zip(&vectors.contact))
+        {
+            *work = r + factor * contact;
+        }
+        self.take_column_forces(parts, attempt, -factor);
+        let System { fixed, .. } = &*attempt.system;
+        for (work, fixed) in attempt.vectors.work.iter_mut().zip(fixed) {
+            if *fixed {
+                *work = 0.0;
+            }
+        }
+    }
+
+    /// Adds the forces of the candidates along the rows of their columns, times `factor`, to `work`.
+    pub(super) fn take_column_forces(&self, parts: &mut Parts, attempt: &mut Attempt, factor: f64) {
+        let width = 1 + match self.rubs(attempt) {
+            true => attempt.system.tangents() as u32,
+            false => 0,
+        };
+        let Some((_, compliance)) = parts.effective.both() else {
+            return;
+        };
+        let interface = &attempt.next.interface;
+        for &point in &self.candidates {
+            let at = point as usize;
+            let t = interface.friction.get(at).copied().unwrap_or_default();
+            let forces = [interface.force[at], t[0], t[1]];
+            for (row, force) in (point * width..(point + 1) * width).zip(forces) {
+                if force != 0.0 {
+                    compliance.add_force(row, factor * force, &mut attempt.vectors.work);
+                }
+            }
+        }
     }
 }

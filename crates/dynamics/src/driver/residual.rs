@@ -6,7 +6,7 @@ use carom_bodies::Body;
 use carom_mesh::ElementId;
 
 use super::loads::damping_rate;
-use super::owners::{Attempt, Links, Parts};
+use super::owners::{Attempt, Contacts, Links, Parts};
 use super::scratch::Squares;
 use super::{Driver, Which};
 use crate::error::{Error, MeshNode};
@@ -34,7 +34,10 @@ pub(super) struct Standing {
 impl Driver {
     /// Loads, inertia, internal and damping forces at x. `first`: those that x does not change too.
     pub(super) fn evaluate(&mut self, first: bool) -> Result<(), Error> {
-        match first && self.is_affine() && self.attempt.system.nonlinear.follows.is_empty() {
+        match first
+            && self.contacts.is_affine(&self.parts)
+            && self.attempt.system.nonlinear.follows.is_empty()
+        {
             // the first guess has no inertia
             true => self.attempt.vectors.inertia.fill(0.0),
             false => self.attempt.evaluate_inertia(),
@@ -84,9 +87,10 @@ impl Driver {
     /// equations less accurate. The excess is by connected part, and without momentum, so that a light body is as accurate where a heavy
     /// one strikes it.
     pub(super) fn standing(&mut self) -> Standing {
-        self.spread();
+        self.stages.spread(&self.contacts, &mut self.attempt);
         let mut squares = std::mem::take(&mut self.parts.squares);
-        self.square_forces(&mut squares);
+        self.links
+            .square_forces(&mut self.parts, &self.attempt, &mut squares);
         let tolerance = self.attempt.system.nonlinear.iteration.tolerance;
         let mut standing = Standing {
             is_rounding: true,
@@ -112,56 +116,12 @@ impl Driver {
         self.parts.squares = squares;
         self.parts.left_over = left_over.sqrt();
         standing.force = force.sqrt();
-        let of_points = self.worst_point().map_or(0.0, |(_, defect)| defect);
+        let of_points = self
+            .contacts
+            .worst_point(&self.parts, &self.attempt)
+            .map_or(0.0, |(_, defect)| defect);
         standing.defect = of_points.max(self.links.worst_row(&self.attempt));
         standing
-    }
-
-    /// Norm of the largest of the forces that balance in each assembly, N.
-    pub(super) fn scale_of_forces(&mut self) -> f64 {
-        let mut squares = std::mem::take(&mut self.parts.squares);
-        self.square_forces(&mut squares);
-        let of = |assembly: &Assembly| {
-            let parts = assembly.parts.iter().map(|&part| &squares[part]);
-            parts.fold(Squares::default(), Squares::with).scale()
-        };
-        let assemblies = self.attempt.system.assemblies.all.iter();
-        let scale = assemblies.map(|assembly| of(assembly).powi(2)).sum::<f64>();
-        self.parts.squares = squares;
-        scale.sqrt()
-    }
-
-    /// Squares of the forces of each part.
-    fn square_forces(&mut self, squares: &mut Vec<Squares>) {
-        if !std::mem::replace(&mut self.parts.pace.is_sized, true) {
-            self.parts.size_of_motion(&self.attempt, squares);
-        }
-        let factor = self.attempt.maps.contact();
-        let (system, vectors) = (&*self.attempt.system, &self.attempt.vectors);
-        for own in squares.iter_mut() {
-            (own.imbalance, own.forces) = (0.0, [0.0; 5]);
-        }
-        for (part, unknowns) in system.parts.iter().enumerate() {
-            let own = &mut squares[part];
-            for i in unknowns.clone() {
-                let contact = factor * vectors.contact[i];
-                if !system.fixed[i] {
-                    own.imbalance += (vectors.residual[i] + contact).powi(2);
-                }
-                let forces = [
-                    contact,
-                    vectors.load[i],
-                    vectors.internal[i],
-                    vectors.inertia[i],
-                ];
-                for (sum, force) in own.forces.iter_mut().zip(forces) {
-                    *sum += force * force;
-                }
-            }
-            if let Some(link) = self.links.force.get(unknowns.clone()) {
-                own.forces[4] += norm_squared(link);
-            }
-        }
     }
 
     /// The same of forces alone, without gaps: those of bodies at small strain are of displacements, and places do not count.
@@ -179,31 +139,6 @@ impl Driver {
     /// Norm of the forces that the iterations of the last step may have left unbalanced, N; zero of linear steps.
     pub fn left_over(&self) -> f64 {
         self.parts.left_over
-    }
-
-    pub(super) fn no_equilibrium(&self, passes: usize) -> Error {
-        let (node, body, cell) = self.attempt.place_of(self.attempt.worst_unknown());
-        let contact = match self.worst_point() {
-            Some((point, defect)) if defect > 1.0 => {
-                format!("; its law is missed most by {}", self.attempt.name(point))
-            }
-            _ => String::new(),
-        };
-        let last = self.parts.residuals.len().saturating_sub(8);
-        let history = self.parts.residuals[last..]
-            .iter()
-            .map(|r| format!("{r:.1e}"));
-        Error::Equilibrium {
-            step: self.attempt.state.step + 1,
-            time: self.attempt.state.time,
-            dt: self.attempt.dt,
-            passes,
-            node,
-            body,
-            cell,
-            contact: contact.into(),
-            history: history.collect::<Vec<_>>().join(", ").into(),
-        }
     }
 }
 
@@ -319,6 +254,58 @@ impl Links {
             };
         }
     }
+
+    /// Norm of the largest of the forces that balance in each assembly, N.
+    pub(super) fn scale_of_forces(&self, parts: &mut Parts, attempt: &Attempt) -> f64 {
+        let mut squares = std::mem::take(&mut parts.squares);
+        self.square_forces(parts, attempt, &mut squares);
+        let of = |assembly: &Assembly| {
+            let parts = assembly.parts.iter().map(|&part| &squares[part]);
+            parts.fold(Squares::default(), Squares::with).scale()
+        };
+        let assemblies = attempt.system.assemblies.all.iter();
+        let scale = assemblies.map(|assembly| of(assembly).powi(2)).sum::<f64>();
+        parts.squares = squares;
+        scale.sqrt()
+    }
+
+    /// Squares of the forces of each part.
+    pub(super) fn square_forces(
+        &self,
+        parts: &mut Parts,
+        attempt: &Attempt,
+        squares: &mut Vec<Squares>,
+    ) {
+        if !std::mem::replace(&mut parts.pace.is_sized, true) {
+            parts.size_of_motion(attempt, squares);
+        }
+        let factor = attempt.maps.contact();
+        let (system, vectors) = (&*attempt.system, &attempt.vectors);
+        for own in squares.iter_mut() {
+            (own.imbalance, own.forces) = (0.0, [0.0; 5]);
+        }
+        for (part, unknowns) in system.parts.iter().enumerate() {
+            let own = &mut squares[part];
+            for i in unknowns.clone() {
+                let contact = factor * vectors.contact[i];
+                if !system.fixed[i] {
+                    own.imbalance += (vectors.residual[i] + contact).powi(2);
+                }
+                let forces = [
+                    contact,
+                    vectors.load[i],
+                    vectors.internal[i],
+                    vectors.inertia[i],
+                ];
+                for (sum, force) in own.forces.iter_mut().zip(forces) {
+                    *sum += force * force;
+                }
+            }
+            if let Some(link) = self.force.get(unknowns.clone()) {
+                own.forces[4] += norm_squared(link);
+            }
+        }
+    }
 }
 
 impl Parts {
@@ -412,4 +399,29 @@ fn first_cell(body: &Body, node: u32) -> ElementId {
         place += 1;
     });
     body.cells()[first.unwrap_or(0)]
+}
+
+impl Contacts {
+    pub(super) fn no_equilibrium(&self, parts: &Parts, attempt: &Attempt, passes: usize) -> Error {
+        let (node, body, cell) = attempt.place_of(attempt.worst_unknown());
+        let contact = match self.worst_point(parts, attempt) {
+            Some((point, defect)) if defect > 1.0 => {
+                format!("; its law is missed most by {}", attempt.name(point))
+            }
+            _ => String::new(),
+        };
+        let last = parts.residuals.len().saturating_sub(8);
+        let history = parts.residuals[last..].iter().map(|r| format!("{r:.1e}"));
+        Error::Equilibrium {
+            step: attempt.state.step + 1,
+            time: attempt.state.time,
+            dt: attempt.dt,
+            passes,
+            node,
+            body,
+            cell,
+            contact: contact.into(),
+            history: history.collect::<Vec<_>>().join(", ").into(),
+        }
+    }
 }

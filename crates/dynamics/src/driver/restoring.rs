@@ -50,8 +50,8 @@ impl Driver {
         }
         let Projected { points, values, .. } = &self.stages.projected;
         stage.give_work(&self.attempt.system, rows, points, values, works);
-        let impulses = self.jump_velocity();
-        let (work, work_obstacles) = self.works_of_impulses();
+        let impulses = self.stages.jump_velocity(&self.contacts, &mut self.attempt);
+        let (work, work_obstacles) = self.stages.works_of_impulses(&self.contacts);
         let jump = Jump {
             impulses,
             work,

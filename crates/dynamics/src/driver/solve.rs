@@ -12,7 +12,7 @@ use carom_contact::Search;
 
 use super::Driver;
 use super::mixing::{LARGEST, LARGEST_OF_FLOATING};
-use super::owners::{Attempt, Parts};
+use super::owners::{Attempt, Contacts, Parts};
 use super::pieces::Pieces;
 use super::refine::WITHIN;
 use super::residual::Standing;
@@ -68,7 +68,7 @@ impl Driver {
         match solved {
             // elements inside out: once more from another guess
             Err(Error::Body(_) | Error::OnRank { .. })
-                if !self.attempt.maps.is_static() && !self.is_affine() =>
+                if !self.attempt.maps.is_static() && !self.contacts.is_affine(&self.parts) =>
             {
                 self.iterate(true)
             }
@@ -79,7 +79,7 @@ impl Driver {
     /// The iterations from the motion of no acceleration, or from the rigid one.
     fn iterate(&mut self, rigidly: bool) -> Result<(), Error> {
         self.begin_iterations(rigidly)?;
-        if self.is_affine() {
+        if self.contacts.is_affine(&self.parts) {
             return self.solve_at_once();
         }
         let passes = self.attempt.system.nonlinear.iteration.passes;
@@ -93,13 +93,18 @@ impl Driver {
             let jumps = self.attempt.jumps();
             self.parts.residuals.push(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing, before) {
-                return self.check_held(pass);
+                return self
+                    .contacts
+                    .check_held(&self.parts, &mut self.attempt, pass);
             }
             if self.parts.floats(&self.attempt) && !jumps && self.approach(standing.scale)? {
                 self.parts.mixing.clear();
                 standing = self.standing();
             }
-            if self.wants_factor(pass) {
+            if self
+                .contacts
+                .wants_factor(&mut self.parts, &self.attempt, pass)
+            {
                 self.renew()?;
                 (self.parts.pace.age, self.parts.pace.made) = (0, pass);
             }
@@ -108,7 +113,7 @@ impl Driver {
             self.solve_interface()?;
             // a motion that contacts hardly hold is far above the noise of the forces
             // what is mixed of a motion would be mixed of the multipliers too
-            if self.refines() {
+            if self.contacts.refines(&self.parts, &self.attempt) {
                 self.refine()?;
             }
             let mixes = !jumps && !self.attempt.has_links();
@@ -116,7 +121,7 @@ impl Driver {
                 && (self.parts.floats(&self.attempt)
                     || standing.imbalance > NOISY * standing.rounding)
             {
-                self.mix();
+                self.contacts.mix(&mut self.parts, &mut self.attempt);
             }
             if self.parts.floats(&self.attempt) && !jumps && self.restrain() {
                 // the part has moved on: iterations begin anew
@@ -127,7 +132,9 @@ impl Driver {
             pass += 1;
         }
         if self.is_solved(&standing, before) {
-            return self.check_held(limit);
+            return self
+                .contacts
+                .check_held(&self.parts, &mut self.attempt, limit);
         }
         Err(self.unbalanced(limit, standing.force))
     }
@@ -176,9 +183,12 @@ impl Driver {
             *x += dx;
         }
         self.links.move_links(&self.attempt, 1.0);
-        self.spread();
+        self.stages.spread(&self.contacts, &mut self.attempt);
         self.parts.left_over = match self.attempt.system.is_nonlinear() {
-            true => self.scale_of_forces() * self.attempt.system.nonlinear.iteration.tolerance,
+            true => {
+                self.links.scale_of_forces(&mut self.parts, &self.attempt)
+                    * self.attempt.system.nonlinear.iteration.tolerance
+            }
             false => 0.0,
         };
         Ok(())
@@ -191,67 +201,12 @@ impl Driver {
         let gains = before.is_none_or(|before| standing.excess < GAIN * before);
         let gains = gains && self.links.force.is_empty();
         // the last iteration of those that converge quadratically is long: points that stick would slip by its square
-        let most = if self.refines() { WITHIN } else { 1.0 };
+        let most = if self.contacts.refines(&self.parts, &self.attempt) {
+            WITHIN
+        } else {
+            1.0
+        };
         (standing.excess <= 1.0 || standing.is_rounding && !gains) && standing.defect <= most
-    }
-
-    /// Whether this iteration needs a new factor.
-    fn wants_factor(&mut self, pass: usize) -> bool {
-        if !self.parts.effective.iterates() {
-            return false;
-        }
-        if self.refines() && self.parts.pace.age > 0 {
-            return self.parts.wants_tangent(&self.attempt);
-        }
-        let (Some(&now), Some(price)) = (self.parts.residuals.last(), self.parts.effective.price())
-        else {
-            return true;
-        };
-        let Some(ratio) = self.contraction() else {
-            return self.parts.pace.age == 0;
-        };
-        let least = if self.alternates() { 1.0 } else { 0.5 };
-        if ratio.is_nan() || ratio >= least {
-            return true;
-        }
-        let left = (self.attempt.system.nonlinear.iteration.tolerance / now).ln();
-        let needed = left / ratio.ln();
-        if self.alternates() && self.parts.pace.age == 2 && self.parts.pace.made > 0 {
-            self.parts.pace.fresh = ratio;
-        }
-        let fresh = match self.parts.pace.fresh > 0.0 {
-            true => (left / self.parts.pace.fresh.ln()).max(FRESH),
-            false => FRESH,
-        };
-        let keeps = needed <= fresh + TANGENT + price;
-        tracing::debug!(
-            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
-             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
-            self.attempt.state.step + 1,
-            ratio,
-            if keeps { "kept" } else { "renewed" },
-            TANGENT + price,
-        );
-        !keeps
-    }
-
-    /// Whether residuals fall by turns fast and slowly.
-    fn alternates(&self) -> bool {
-        self.attempt.between() && !self.refines()
-    }
-
-    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
-    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
-    /// two iterations are looked at.
-    fn contraction(&self) -> Option<f64> {
-        match (&self.parts.residuals[..], self.parts.pace.age) {
-            (_, 0) => None,
-            ([.., before, now], 1) if !self.alternates() => Some(now / before),
-            (_, 1) => None,
-            ([.., before, _, now], _) if self.alternates() => Some((now / before).sqrt()),
-            ([.., before, now], _) => Some(now / before),
-            _ => None,
-        }
     }
 
     /// Goes the way of the iteration, or as much of it as does not make things much worse.
@@ -276,7 +231,7 @@ impl Driver {
                     self.contacts.pair(&mut self.attempt, false);
                     let standing = self.standing();
                     let grows = standing.imbalance > GROWTH * before.imbalance.max(1e-6);
-                    if jumps || !grows || self.is_affine() {
+                    if jumps || !grows || self.contacts.is_affine(&self.parts) {
                         (last, gains) = (Some(Ok(standing)), true);
                         break;
                     }
@@ -310,26 +265,7 @@ impl Driver {
                 Ok(standing)
             }
             Some(outcome) => outcome,
-            None => Err(self.no_equilibrium(0)),
-        }
-    }
-
-    /// Mixes the iteration that has been computed with those before it.
-    fn mix(&mut self) {
-        let largest = match self.parts.floats(&self.attempt) {
-            true => LARGEST_OF_FLOATING,
-            false => LARGEST,
-        };
-        let way = (
-            &self.attempt.vectors.x[..],
-            &mut self.attempt.vectors.dx[..],
-        );
-        if self
-            .parts
-            .mixing
-            .mix(way, &mut self.attempt.next.interface, largest)
-        {
-            self.contacts.take_weak(&self.attempt);
+            None => Err(self.contacts.no_equilibrium(&self.parts, &self.attempt, 0)),
         }
     }
 }
@@ -454,6 +390,84 @@ impl Attempt {
                     vectors.x[i] += turn[axis] / factor(i);
                 }
             }
+        }
+    }
+}
+
+impl Contacts {
+    /// Whether this iteration needs a new factor.
+    pub(super) fn wants_factor(&self, parts: &mut Parts, attempt: &Attempt, pass: usize) -> bool {
+        if !parts.effective.iterates() {
+            return false;
+        }
+        if self.refines(parts, attempt) && parts.pace.age > 0 {
+            return parts.wants_tangent(attempt);
+        }
+        let (Some(&now), Some(price)) = (parts.residuals.last(), parts.effective.price()) else {
+            return true;
+        };
+        let Some(ratio) = self.contraction(parts, attempt) else {
+            return parts.pace.age == 0;
+        };
+        let least = if self.alternates(parts, attempt) {
+            1.0
+        } else {
+            0.5
+        };
+        if ratio.is_nan() || ratio >= least {
+            return true;
+        }
+        let left = (attempt.system.nonlinear.iteration.tolerance / now).ln();
+        let needed = left / ratio.ln();
+        if self.alternates(parts, attempt) && parts.pace.age == 2 && parts.pace.made > 0 {
+            parts.pace.fresh = ratio;
+        }
+        let fresh = match parts.pace.fresh > 0.0 {
+            true => (left / parts.pace.fresh.ln()).max(FRESH),
+            false => FRESH,
+        };
+        let keeps = needed <= fresh + TANGENT + price;
+        tracing::debug!(
+            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
+             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
+            attempt.state.step + 1,
+            ratio,
+            if keeps { "kept" } else { "renewed" },
+            TANGENT + price,
+        );
+        !keeps
+    }
+
+    /// Whether residuals fall by turns fast and slowly.
+    pub(super) fn alternates(&self, parts: &Parts, attempt: &Attempt) -> bool {
+        attempt.between() && !self.refines(parts, attempt)
+    }
+
+    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
+    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
+    /// two iterations are looked at.
+    pub(super) fn contraction(&self, parts: &Parts, attempt: &Attempt) -> Option<f64> {
+        match (&parts.residuals[..], parts.pace.age) {
+            (_, 0) => None,
+            ([.., before, now], 1) if !self.alternates(parts, attempt) => Some(now / before),
+            (_, 1) => None,
+            ([.., before, _, now], _) if self.alternates(parts, attempt) => {
+                Some((now / before).sqrt())
+            }
+            ([.., before, now], _) => Some(now / before),
+            _ => None,
+        }
+    }
+
+    /// Mixes the iteration that has been computed with those before it.
+    pub(super) fn mix(&mut self, parts: &mut Parts, attempt: &mut Attempt) {
+        let largest = match parts.floats(attempt) {
+            true => LARGEST_OF_FLOATING,
+            false => LARGEST,
+        };
+        let way = (&attempt.vectors.x[..], &mut attempt.vectors.dx[..]);
+        if parts.mixing.mix(way, &mut attempt.next.interface, largest) {
+            self.take_weak(attempt);
         }
     }
 }

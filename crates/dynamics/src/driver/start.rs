@@ -1,52 +1,28 @@
 //! The initial state, and the passage from the static stage to the dynamics.
 
-use std::cell::RefCell;
 use std::sync::Arc;
 
-use carom_algebra::Interrupt;
-use carom_bodies::{Scratch, Stored};
-use carom_contact::{Pairing, Search};
-
-use super::active::Active;
-use super::carried::Carried;
-use super::closings::Closings;
-use super::effective::Effective;
-use super::far::Far;
-use super::floating::Floating;
 use super::identity::{End, energies};
-use super::impulse::Impulses;
 use super::leapfrog::Direct;
-use super::linking::Multipliers;
-use super::mixing::Mixing;
 use super::owners::{Attempt, Balances, Contacts, Explicit, Parts, RankWork, Stages};
-use super::paired::sums_compliances;
-use super::passage::Passage;
-use super::rebound::Rebound;
 use super::record::motion_of;
-use super::refined::Refined;
-use super::scratch::{Pace, Predictor, Projected, Restoring, Vectors, Works};
-use super::supports::Jump;
-use super::weak::{WeakForms, WithWeak};
 use super::{Driver, Which, owners};
 use crate::assembly_energy::{AssemblyEnergies, PartMotion};
 use crate::control::Control;
-use crate::costs::{Costs, Phases};
-use crate::coulomb::Coulomb;
+use crate::costs::Costs;
 use crate::error::Error;
 use crate::exchange::Exchange;
-use crate::interface::Interface;
 use crate::ledger::{Ledger, reactions};
 use crate::operator::Operators;
 use crate::records::Records;
-use crate::report::{ContactReport, Notices, StepReport};
+use crate::report::{ContactReport, StepReport};
 use crate::resultant::Resultant;
 use crate::shapes::Rates;
 use crate::state::{Links, State, empty_state, state_without_motion};
 use crate::step_forces::{OutsideForces, StepForces};
 use crate::step_terms::Energies;
-use crate::system::{Maps, System};
+use crate::system::System;
 use crate::watch::Watch;
-use carom_system::ContactPair;
 
 impl Driver {
     /// Sets the initial state.
@@ -69,99 +45,17 @@ impl Driver {
 
     fn begun(released: Arc<System>, direct: Option<Direct>) -> Result<Driver, Error> {
         let system = Arc::clone(released.staged.as_ref().unwrap_or(&released));
-        let (n, points) = (system.unknowns(), system.points());
-        let zeros = || vec![0.0; n];
-        let scheme = system.scheme.get();
-        let maps = Maps::new(&system, system.dt, system.dt);
-        let projects = |contact: &ContactPair| contact.law.projects();
-        let stages = scheme.projects_predictor()
-            || scheme.restores_contact_work()
-            || sums_compliances(&system, maps.first());
-        let pushes = maps.first().uses_contact_acceleration();
-        let stages = stages || pushes && !system.link_rows.is_empty();
-        let staged = stages && points > 0 || system.contacts.iter().any(projects);
-        let push = match pushes {
-            true => zeros(),
-            false => Vec::new(),
-        };
         let mut driver = Driver {
-            contacts: Contacts {
-                manners: Vec::new(),
-                turns: false,
-                by_rate: false,
-                interface: Interface::default(),
-                interfaces: Vec::new(),
-                saddle: RefCell::default(),
-                pairing: Pairing::default(),
-                initial: vec![Pairing::default(); system.contacts.len()],
-                search: system.contacts.iter().map(|_| Search::default()).collect(),
-                narrowed: Vec::new(),
-                narrowed_for: 0,
-                active: Active::of(&system),
-                passage: Passage::of(&system),
-                far: Far::of(&system, |_| true),
-                closings: Closings::of(&system),
-                rebound: Rebound::of(&system),
-                candidates: Vec::new(),
-                candidate_data: Vec::new(),
-                free_gaps: Vec::new(),
-                coulomb: Coulomb::default(),
-                weak: WeakForms::new(&system)?,
-                with_weak: WithWeak::default(),
-                stacked: carom_contact::Rows::default(),
-                slips: Vec::new(),
-                failed: None,
-                failed_friction: None,
-                of_contacts: Vec::new(),
-                nodal: Vec::new(),
-                rows_stand: false,
-            },
-            parts: Parts {
-                effective: Effective::new(),
-                floating: Floating::new(&system)?,
-                scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
-                force_sweeps: 0,
-                residuals: Vec::new(),
-                pace: Pace::default(),
-                mixing: Mixing::default(),
-                refined: Refined::default(),
-                carried: Carried::default(),
-                squares: Vec::new(),
-                stored: Stored::default(),
-                prepared: false,
-                left_over: 0.0,
-            },
-            links: owners::Links {
-                force: match system.link_rows.is_empty() {
-                    true => Vec::new(),
-                    false => zeros(),
-                },
-                multipliers: Multipliers::new(&system),
-                rows: Arc::clone(&system.link_rows),
-            },
-            stages: Stages {
-                impulses: match staged {
-                    true => Some(Impulses::new(&released)?),
-                    false => None,
-                },
-                projected: Projected::new(points),
-                predictor: Predictor::default(),
-                restoring: Restoring::default(),
-            },
+            contacts: Contacts::of(&system)?,
+            parts: Parts::of(&system)?,
+            links: owners::Links::of(&system),
+            stages: Stages::of(&system, &released)?,
             explicit: Explicit {
                 direct,
                 rates: Rates::new(system.parts.len()),
             },
-            ranks: RankWork {
-                shared: None,
-                several: false,
-                looked: 0,
-            },
-            balances: Balances {
-                jump: Jump::default(),
-                reactions: Vec::new(),
-                works: Works::default(),
-            },
+            ranks: RankWork::default(),
+            balances: Balances::default(),
             forced: None,
             ahead: system.dt,
             unplanned: None,
@@ -175,25 +69,10 @@ impl Driver {
                 true => None,
                 false => Some(released),
             },
-            attempt: Attempt {
-                dt: 0.0,
-                maps,
-                sized: None,
-                identity: None,
-                interrupt: Interrupt::default(),
-                notices: Notices::default(),
-                vectors: Vectors {
-                    push,
-                    ..Vectors::default()
-                },
-                next: state_without_motion(&system),
-                state: state_without_motion(&system),
-                phases: Phases::default(),
-                system,
-            },
+            attempt: Attempt::of(system),
         };
         let system = Arc::clone(&driver.attempt.system);
-        driver.restart(&system.initial_displacement, &system.initial_velocity)?;
+        driver.restart(&system.initial.displacement, &system.initial.velocity)?;
         Ok(driver)
     }
 
@@ -485,7 +364,7 @@ impl Driver {
             .state
             .motion
             .v
-            .clone_from(&system.initial_velocity);
+            .clone_from(&system.initial.velocity);
         self.attempt.state.records.begin_dynamics();
         self.begin()?;
         if self.attempt.has_links() {

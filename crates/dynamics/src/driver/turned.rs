@@ -10,7 +10,7 @@ impl Links {
     /// of these rows.
     pub(super) fn turn_rows(&mut self, attempt: &Attempt) {
         let system = &attempt.system;
-        if system.turning_rows.is_empty() {
+        if system.links.turning.is_empty() {
             return;
         }
         let motion = &attempt.state.motion;
@@ -23,7 +23,8 @@ impl Links {
         };
         let rows: &mut Vec<LinkRow> = Arc::make_mut(&mut self.rows);
         system
-            .turning_rows
+            .links
+            .turning
             .coefficients(&system.unknowns, &at, rows);
         self.set_links(attempt);
     }
@@ -32,7 +33,7 @@ impl Links {
     /// forces at both ends, as that of the other, and the momentum of both sides changes alike.
     pub(super) fn rows_before(&self, attempt: &Attempt) -> Option<Vec<LinkRow>> {
         let system = &attempt.system;
-        if system.turning_rows.is_empty() || system.schemes.len() < 2 || attempt.maps.is_static() {
+        if system.links.turning.is_empty() || system.schemes.len() < 2 || attempt.maps.is_static() {
             return None;
         }
         let motion = &attempt.state.motion;
@@ -43,7 +44,8 @@ impl Links {
         };
         let mut rows = Vec::clone(&self.rows);
         system
-            .turning_rows
+            .links
+            .turning
             .coefficients(&system.unknowns, &at, &mut rows);
         Some(rows)
     }
@@ -56,10 +58,11 @@ impl Links {
             from: None,
         };
         let system = &attempt.system;
-        if !system.turning_rows.is_empty() {
+        if !system.links.turning.is_empty() {
             let rows: &mut Vec<LinkRow> = Arc::make_mut(&mut self.rows);
             system
-                .turning_rows
+                .links
+                .turning
                 .coefficients(&system.unknowns, &at, rows);
         }
     }
@@ -90,7 +93,7 @@ impl Attempt {
             u: &motion.u,
             from: None,
         };
-        let rows = &self.system.turning_rows;
+        let rows = &self.system.links.turning;
         rows.centripetal(&self.system.unknowns, &at, &motion.v)
             .collect()
     }
@@ -113,7 +116,7 @@ impl Attempt {
 
     pub(super) fn missed(&self, x: &[f64]) -> Vec<(usize, f64)> {
         let system = &self.system;
-        if system.turning_rows.is_empty() {
+        if system.links.turning.is_empty() {
             return Vec::new();
         }
         let motion = &self.state.motion;
@@ -123,7 +126,7 @@ impl Attempt {
             u: &end,
             from: None,
         };
-        let values = system.turning_rows.values(&system.unknowns, &at);
+        let values = system.links.turning.values(&system.unknowns, &at);
         values.collect()
     }
 }

@@ -12,7 +12,7 @@ pub fn why_not_on_ranks(system: &System) -> Option<OnRanks> {
     if system.static_steps() > 0 {
         return Some(OnRanks::StaticStage);
     }
-    if !system.link_rows.is_empty() {
+    if !system.links.rows.is_empty() {
         return Some(OnRanks::Links);
     }
     if system.has_damping() {

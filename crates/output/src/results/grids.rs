@@ -365,7 +365,7 @@ impl SurfaceGrid {
 
     fn of_points(system: &System, contact: usize, points: &[Point]) -> SurfaceGrid {
         let reference = vec![0.0; system.unknowns()];
-        let places = system.places(0.0, &reference, &system.initial_frames);
+        let places = system.places(0.0, &reference, &system.initial.frames);
         SurfaceGrid {
             contact,
             points: points.iter().map(|point| point.place(&places)).collect(),

@@ -115,5 +115,5 @@ fn are_joined(system: &System, pair: [usize; 2]) -> bool {
     let mut contacts = system.contacts.iter();
     parts[0] == parts[1]
         || contacts.any(|contact| pair.iter().all(|body| contact.bodies.contains(body)))
-        || system.link_rows.iter().any(linked)
+        || system.links.rows.iter().any(linked)
 }

@@ -219,7 +219,7 @@ impl Results {
             filtered,
             comparison: settings.reference.clone().map(Comparison::new),
             totals: Totals::default(),
-            start: velocities(&system, &system.initial_velocity),
+            start: velocities(&system, &system.initial.velocity),
             last: Last::default(),
             due: Due::from(0.0),
             broken: false,

@@ -90,7 +90,7 @@ pub(crate) fn contact_point(
     let contact = system.contacts.get(index)?;
     let total: f64 = contact.points.iter().map(|point| point.area).sum();
     let at_rest = vec![0.0; system.unknowns()];
-    let places = system.places(0.0, &at_rest, &system.initial_frames);
+    let places = system.places(0.0, &at_rest, &system.initial.frames);
     let mut centroid = [0.0; 3];
     for point in &contact.points {
         let place = point.place(&places);
@@ -142,7 +142,7 @@ fn nearest(system: &System, nodes: impl Iterator<Item = u32>, to: &[f64; 3]) -> 
 
 /// Normal at a secondary node at the start; where it faces nothing yet, the way to the primary node.
 fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>) -> [f64; 3] {
-    let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
+    let places = system.places(0.0, &system.initial.displacement, &system.initial.frames);
     let mut rows = Rows::default();
     rows.clear();
     let contact = &system.contacts[contact];

@@ -74,7 +74,7 @@ fn turning(system: Arc<System>, rate: f64) -> Arc<System> {
     for (x, v) in system
         .x
         .iter()
-        .zip(system.initial_velocity.chunks_exact_mut(dim))
+        .zip(system.initial.velocity.chunks_exact_mut(dim))
     {
         v[0] -= rate * x[1];
         v[1] += rate * x[0];
