@@ -10,13 +10,14 @@ use carom_contact::{Contact, Frames, Places};
 use carom_schemes::Scheme;
 
 use crate::assemblies::Assemblies;
-use crate::contact_pair::{ContactPair, Made};
+use crate::contact_pair::ContactPair;
 use crate::contacts::{numbered, owners};
 use crate::error::Error;
 use crate::extents::{NodeMasses, diagonals};
 use crate::initial::{settle, slack};
 use crate::levers::Levers;
 use crate::links::Links;
+use crate::made::Made;
 use crate::mass::Mass;
 use crate::massless::redistribute;
 use crate::middles::{Carried, add_middles};

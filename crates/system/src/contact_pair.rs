@@ -1,18 +1,14 @@
 //! What a system knows of each of its contacts.
 
-use std::collections::BTreeMap;
 use std::ops::{Deref, Range};
 
-use carom_algebra::unknowns::Unknowns;
-use carom_bodies::Body;
 use carom_contact::Contact;
-use carom_mesh::{ElementId, Face};
+use carom_mesh::Face;
 
 use crate::contacts::{is_of_many, renumbered, sides, touching};
 use crate::error::Error;
 use crate::extents::passage;
-use crate::levers::Levers;
-use crate::model::Model;
+use crate::made::Made;
 use crate::moments::MomentAbout;
 use crate::tolerances::Tolerances;
 
@@ -52,21 +48,6 @@ impl Deref for ContactPair {
     fn deref(&self) -> &Contact {
         &self.contact
     }
-}
-
-/// What the contacts of a model are made from.
-pub(crate) struct Made<'a> {
-    pub(crate) model: &'a Model,
-    /// The body of each cell at a contact.
-    pub(crate) owners: &'a BTreeMap<ElementId, usize>,
-    pub(crate) bodies: &'a [Body],
-    pub(crate) part_of_body: &'a [usize],
-    /// System number of each mesh node.
-    pub(crate) number: &'a [u32],
-    /// Whether bodies are axisymmetric.
-    pub(crate) axisymmetric: bool,
-    pub(crate) unknowns: &'a Unknowns,
-    pub(crate) levers: &'a Levers,
 }
 
 impl ContactPair {

@@ -3,7 +3,7 @@
 use carom_bodies::{Body, smallest_size};
 use carom_mesh::{Bounds, ElementId, Surface};
 
-use crate::contact_pair::Made;
+use crate::made::Made;
 use crate::model::{ModelContact, ModelTarget};
 
 /// Lumped masses of the nodes of a body: system number, kg.

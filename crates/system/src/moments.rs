@@ -3,9 +3,9 @@
 use carom_contact::{Contact, Target};
 use carom_mesh::Face;
 
-use crate::contact_pair::Made;
 use crate::error::Error;
 use crate::levers::Levers;
+use crate::made::Made;
 use crate::model::ModelContact;
 
 /// The point that the moment of a contact is about, and what its forces on the secondary body act on.

@@ -18,6 +18,7 @@ mod apart;
 mod approach;
 mod attempt;
 mod balance;
+mod balance_works;
 mod begun_solve;
 mod bolts;
 mod candidates;
