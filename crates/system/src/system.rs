@@ -6,7 +6,8 @@ use std::sync::Arc;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, height};
-use carom_contact::{Contact, Target};
+use carom_contact::law::Level;
+use carom_contact::{Contact, Integration, Target};
 use carom_mesh::Mesh;
 use carom_schemes::Scheme;
 
@@ -155,6 +156,33 @@ impl System {
     /// Whether steps may end with impulses of a contact that are in no force.
     pub fn has_impulses(&self, contact: usize) -> bool {
         self.contacts[contact].law.projects() || self.scheme.get().restores_contact_work()
+    }
+
+    /// Whether a side of a contact has several bodies that move apart: what two bodies do to each other is then not told apart.
+    pub fn is_of_many(&self, contact: usize) -> bool {
+        self.contacts[contact].is_of_many
+    }
+
+    /// Tangents of a contact point in problems with friction: none where no contact has any.
+    pub fn tangents(&self) -> usize {
+        match self.contacts.iter().any(|contact| contact.friction > 0.0) {
+            true => self.dim.saturating_sub(1),
+            false => 0,
+        }
+    }
+
+    /// Whether a contact of finite sliding is paired where the iterations of a dynamic step are: the geometry of bodies at small strain
+    /// without friction is that in which the step captures it. A stop or another law with a compliance on an obstacle is no such
+    /// contact: its force belongs to the instant of the internal forces, and with the normal of another instant a mass in orbit in a
+    /// bore would gain or lose angular momentum in each step, in proportion to the step.
+    pub fn pairs_anew(&self, contact: usize) -> bool {
+        let mut bodies = self.contacts[contact].bodies.iter();
+        let finite = bodies.any(|&body| self.bodies[body].has_finite_motion());
+        let contact = &self.contacts[contact];
+        let mortar = matches!(contact.integration, Integration::Mortar { .. });
+        let compliant = contact.law.get().level() == Level::GapAndRate;
+        let round = matches!(contact.target, Target::Rigid(_)) && contact.turns();
+        finite || mortar || contact.moves() || contact.friction > 0.0 || compliant && round
     }
 
     /// The number of the scheme of the secondary side of a contact.
