@@ -7,6 +7,7 @@ mod check;
 mod compare;
 mod diagnostics;
 mod exit;
+mod expectations;
 mod load;
 mod modes;
 mod new;

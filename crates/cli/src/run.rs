@@ -12,6 +12,7 @@ use carom_output::{Grade, Level, Margin, Summary};
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD, FAILED, INTERRUPTED};
+use crate::expectations;
 use crate::load::{load_on, warn_of_ranks};
 use crate::progress::Progress;
 use crate::ranks::all_have;
@@ -235,6 +236,9 @@ fn print(summary: &Summary, folder: &Path) {
         out!("  note: {}", line(notice));
     }
     out!("  {}", cost(summary));
+    if let Some(found) = &summary.expectations {
+        expectations::print(found);
+    }
     out!("  {}", verdict(summary));
     out!("  report: {}", folder.join("report.html").display());
     out!("  figures: {}", folder.join("plots").display());
