@@ -36,6 +36,32 @@ macro_rules! cases {
 // Cases with rows that take a few seconds at most. Those that are left out run for longer, or a check runs their model already.
 cases! {
     "two-bars":,
+    "bar-on-wall":,
+    "bars-in-zones":,
+    "two-bars-newmark":,
+    "arlequin-bars":,
+    "mass-on-stop":,
+    "bolted-plates": "plates.msh",
+    "oscillators-in-earthquake":,
+    "pounding":,
+    "beam-on-stop": "beam.msh",
+    "mast-in-zones":,
+    "rolling-rod":,
+    "flexible-pendulum":,
+    "shell-strips": "strips.msh",
+    "turning-bar": "bar.msh",
+    "rigid-hammer": "hammer-and-bar.msh",
+    "block-drop": "block.msh",
+    "oblique-bar": "bar-coarse.msh",
+    "conveyor": "crate.msh",
+    "spinning-bar": "bar-plane.msh",
+    "rings": "rings-coarse.msh",
+    "ring-sector": "ring.msh",
+    "hertz": "spheres.msh",
+    "hertz-cylinder": "cylinder.msh",
+    "ironing": "ironing-coarse.msh",
+    "crushed-tube": "tube.msh",
+    "blocks-non-matching": "flat-plane.msh",
 }
 
 /// The rows of a case; with the small size of the tests as well, since a row belongs to the file as it is.
