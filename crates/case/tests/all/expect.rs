@@ -28,15 +28,15 @@ reference.two-bars = {}
 const MASS: &str = r#"
 carom = 1
 mass.block = { mass = "100 kg", at = [0.0], initial.velocity = [1.0] }
-spring.hanger = { ends = ["block"], axis = [1.0], stiffness = "10 kN/m" }
-stop.bumper = { ends = ["block"], axis = [1.0], gap = 0.0, stiffness = "1 MN/m" }
+spring.hanger = { ends = ["block", "ground"], axis = [1.0], stiffness = "10 kN/m" }
+stop.bumper = { ends = ["block", "ground"], axis = [1.0], gap = 0.0, stiffness = "1 MN/m" }
 time = { end = "40 ms", step = "0.05 ms", scheme.newmark = {} }
 "#;
 
 /// A block that slides on a rough plane at finite strain.
 const BLOCK: &str = r#"
 carom = 1
-mesh.generate.block.rectangle = { from = [0.0, 0.0], to = [1.0, 0.5], elements = [2, 1] }
+mesh.generate.block.rectangle = { origin = [0.0, 0.0], size = [1.0, 0.5], elements = [2, 1] }
 material.rubber = { density = 1000.0, neo-hooke = { young = "1 MPa", poisson = 0.3 } }
 body.block = { region = "block", material = "rubber", section.plane-strain.thickness = 1.0, initial.velocity = [0.1, -0.1] }
 load.weight = { acceleration = [0.0, -9.81] }
