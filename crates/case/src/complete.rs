@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::build::{self, AddedForce, Built};
 use crate::error::Problem;
-use crate::expect::{Names, rows};
+use crate::expect::{Names, changes_the_model, rows};
 use crate::input::Input;
 use crate::locate::Locator;
 use crate::origin::Origin;
@@ -48,7 +48,9 @@ fn with_rows(
     }
     let settings = settings((input, case, &built), PathBuf::new(), &Origin::of_none());
     let names = Names::of(&built.system, &settings);
-    let rows = rows(case, &names, built.end);
+    let mut overrides = input.sources.iter().skip(1);
+    let changed = overrides.any(|source| changes_the_model(&source.text));
+    let rows = rows((case, changed), &names, built.end);
     built.expected = rows.map_err(|problems| locator.locate_all(problems))?;
     Ok(built)
 }

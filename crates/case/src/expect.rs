@@ -19,13 +19,19 @@ const THINNED: &str = "output.histories";
 /// Most names that a message lists.
 const SHOWN: usize = 40;
 
-/// The rows of a case whose run ends at a time (s), or their problems.
-pub(crate) fn rows(case: &Case, names: &Names, end: f64) -> Result<Expected, Vec<Problem>> {
+/// The rows of a case whose run ends at a time (s), or their problems. Of a model that overrides have `changed`, whose rows are not judged, those
+/// that do not fit are left out.
+pub(crate) fn rows(
+    (case, changed): (&Case, bool),
+    names: &Names,
+    end: f64,
+) -> Result<Expected, Vec<Problem>> {
     let (mut rows, mut problems) = (BTreeMap::new(), Vec::new());
     for (name, given) in case.expect.iter() {
         match names.row(&format!("expect.{name}"), given, end) {
             Ok(row) => drop(rows.insert(name.to_owned(), row)),
-            Err(problem) => problems.push(problem),
+            Err(_) if changed => {}
+            Err(problem) => problems.push(*problem),
         }
     }
     match problems.is_empty() {
@@ -56,7 +62,8 @@ pub(crate) fn expected(rows: &Expected, overrides: &[String]) -> Expected {
     }
 }
 
-fn changes_the_model(text: &str) -> bool {
+/// Whether an override changes the model, or what its rows read.
+pub(crate) fn changes_the_model(text: &str) -> bool {
     let key = text.split('=').next().unwrap_or_default().trim();
     let is_of = |table: &str| {
         let rest = key.strip_prefix(table);
@@ -86,16 +93,16 @@ impl Names {
     }
 
     /// A row to the time `end` (s).
-    fn row(&self, path: &str, given: &Expect, end: f64) -> Result<Expectation, Problem> {
+    fn row(&self, path: &str, given: &Expect, end: f64) -> Result<Expectation, Box<Problem>> {
         let (key, quantity, all) = match (&given.summary, &given.column) {
             (Some(name), _) => ("summary", name, &self.of_summary),
             (None, Some(name)) => ("column", name, &self.of_columns),
             // the schema has refused it
-            (None, None) => return Err(Problem::new(path, "no quantity")),
+            (None, None) => return refused(Problem::new(path, "no quantity")),
         };
         let unit = *all
             .get(quantity)
-            .ok_or_else(|| unknown(&format!("{path}.{key}"), quantity, all))?;
+            .ok_or_else(|| Box::new(unknown(&format!("{path}.{key}"), quantity, all)))?;
         Ok(Expectation {
             quantity: quantity.clone(),
             take: taken(path, given, end)?,
@@ -138,7 +145,7 @@ fn unknown(path: &str, name: &str, all: &BTreeMap<String, &'static str>) -> Prob
     }
 }
 
-fn taken(path: &str, given: &Expect, end: f64) -> Result<Option<Take>, Problem> {
+fn taken(path: &str, given: &Expect, end: f64) -> Result<Option<Take>, Box<Problem>> {
     Ok(match given.take {
         None => None,
         Some(schema::Take::Largest) => Some(Take::Largest),
@@ -147,13 +154,13 @@ fn taken(path: &str, given: &Expect, end: f64) -> Result<Option<Take>, Problem> 
         Some(schema::Take::At(time)) if time.0 > end => {
             let problem = Problem::new(format!("{path}.take.at"), "after the end of the run");
             let found = problem.found(format!("{} s", time.0));
-            return Err(found.accepted([format!("at most {end} s")]));
+            return refused(found.accepted([format!("at most {end} s")]));
         }
         Some(schema::Take::At(time)) => Some(Take::At(time.0)),
     })
 }
 
-fn range(path: &str, given: &Expect, unit: &'static str) -> Result<Range, Problem> {
+fn range(path: &str, given: &Expect, unit: &'static str) -> Result<Range, Box<Problem>> {
     let read = |key: &str, amount: &Option<Amount>| match amount {
         None => Ok(None),
         Some(amount) => si(&format!("{path}.{key}"), amount, unit).map(Some),
@@ -166,7 +173,7 @@ fn range(path: &str, given: &Expect, unit: &'static str) -> Result<Range, Proble
         return match (at_least, at_most) {
             (Some(low), Some(high)) if low > high => {
                 let problem = Problem::new(format!("{path}.at-least"), "above `at-most`");
-                Err(problem.found(low).accepted([format!("at most {high}")]))
+                refused(problem.found(low).accepted([format!("at most {high}")]))
             }
             _ => Ok(Range::Within { at_least, at_most }),
         };
@@ -174,7 +181,7 @@ fn range(path: &str, given: &Expect, unit: &'static str) -> Result<Range, Proble
     if at_least.is_some() || at_most.is_some() {
         let key = ["at-most", "at-least"][usize::from(at_least.is_some())];
         let message = "a row has a value or bounds, not both";
-        return Err(Problem::new(format!("{path}.{key}"), message).accepted(["no bounds"]));
+        return refused(Problem::new(format!("{path}.{key}"), message).accepted(["no bounds"]));
     }
     let tolerance = tolerance(path, given, (value, unit))?;
     Ok(Range::Near { value, tolerance })
@@ -185,7 +192,7 @@ fn tolerance(
     path: &str,
     given: &Expect,
     (value, unit): (f64, &'static str),
-) -> Result<f64, Problem> {
+) -> Result<f64, Box<Problem>> {
     let path = format!("{path}.tolerance");
     let written = given.tolerance.as_ref();
     let tolerance = match written {
@@ -195,22 +202,22 @@ fn tolerance(
                 "" => "`at-least` and `at-most` in place of `value` and `tolerance`".to_owned(),
                 unit => format!("a text with a unit, such as \"1 {unit}\""),
             };
-            return Err(Problem::new(path, message).found(part).accepted([accepted]));
+            return refused(Problem::new(path, message).found(part).accepted([accepted]));
         }
         Some(Amount::Number(part)) => part * value.abs(),
         Some(text) => si(&path, text, unit)?,
         // the schema has refused it
-        None => return Err(Problem::new(path, "no tolerance")),
+        None => return refused(Problem::new(path, "no tolerance")),
     };
     if tolerance < 0.0 {
         let problem = Problem::new(path, "a tolerance is not negative");
-        return Err(problem.accepted(["zero or more"]));
+        return refused(problem.accepted(["zero or more"]));
     }
     Ok(tolerance)
 }
 
 /// A number in the unit of its quantity.
-fn si(path: &str, amount: &Amount, unit: &'static str) -> Result<f64, Problem> {
+fn si(path: &str, amount: &Amount, unit: &'static str) -> Result<f64, Box<Problem>> {
     let text = match amount {
         Amount::Number(value) => return Ok(*value),
         Amount::Text(text) => text,
@@ -226,11 +233,15 @@ fn si(path: &str, amount: &Amount, unit: &'static str) -> Result<f64, Problem> {
             unit => format!("a number in {unit}, or a text such as \"1.5 {unit}\""),
         };
         let problem = Problem::new(path, error.to_string());
-        Problem {
+        Box::new(Problem {
             nearest: error.meant(),
             ..problem.found(format!("{text:?}")).accepted([accepted])
-        }
+        })
     })
+}
+
+fn refused<T>(problem: Problem) -> Result<T, Box<Problem>> {
+    Err(Box::new(problem))
 }
 
 fn kind(given: ExpectKind) -> Kind {
@@ -244,11 +255,11 @@ fn kind(given: ExpectKind) -> Kind {
 }
 
 /// The reason for the tolerance. A figure of our own has no other hold than that.
-fn reason(path: &str, given: &Expect) -> Result<Option<String>, Problem> {
+fn reason(path: &str, given: &Expect) -> Result<Option<String>, Box<Problem>> {
     if given.kind == ExpectKind::Regression && given.reason.is_none() {
         let message = "a regression says why its tolerance is what it is";
         let problem = Problem::new(format!("{path}.kind"), message).found("regression");
-        return Err(problem.accepted(["the key `reason` beside it"]));
+        return refused(problem.accepted(["the key `reason` beside it"]));
     }
     Ok(given.reason.clone())
 }

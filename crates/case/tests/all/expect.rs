@@ -127,6 +127,12 @@ fn rows_are_stated_for_the_file_as_it_is() {
     assert!(judged.rows["impulse"].found.is_some());
     let why = judged.unjudged.unwrap();
     assert!(why.contains("--set time.step.courant=1"), "{why}");
+    // a number that the changed model has not is left out
+    let moved = row("error", r#"summary = "exact.force_error", at-most = 0.2"#);
+    let without = (text.clone() + &moved).replace("reference.two-bars = {}", "");
+    assert!(summary(&without, &[]).is_err());
+    let (judged, _) = found(&without, &["time.step.courant=1"]);
+    assert_eq!(judged.rows.keys().collect::<Vec<_>>(), ["impulse"]);
     // these do not change the model
     let harmless = [
         "title=\"bars\"",
