@@ -6,6 +6,7 @@
 mod cases;
 mod check;
 mod compare;
+mod contacts;
 mod diagnostics;
 mod exit;
 mod expectations;

@@ -223,10 +223,13 @@ fn what_is_no_number_of_a_run_is_refused_with_what_is_accepted_and_the_nearest()
 }
 
 /// Tables of the summary that are no results of a case, or that repeat others.
-const LEFT_OUT: [&str; 24] = [
+const LEFT_OUT: [&str; 26] = [
     "about",
     "allowable",
     "bodies",
+    // a run that goes on has others
+    "counts",
+    "factorisations_per_step",
     "damped_modes",
     "dimension",
     "elements",
@@ -281,7 +284,7 @@ fn every_number_of_a_summary_can_be_expected() {
         let (_, file) = summary(case, &[]).unwrap();
         let mut all = Vec::new();
         numbers("", &file, &mut all);
-        assert!(all.len() > 60, "{all:?}");
+        assert!(all.len() > 50, "{all:?}");
         let mut text = case.to_owned();
         for (k, name) in all.iter().enumerate() {
             let keys = format!("summary = \"{name}\", at-least = -1e300, at-most = 1e300");

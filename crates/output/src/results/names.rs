@@ -171,25 +171,10 @@ const ZONES: &[Key] = &[
     ("passes_per_step", ""),
 ];
 
-const COUNTS: &[Key] = &[
-    ("factorisations", ""),
-    ("sweeps", ""),
-    ("factor_entries", ""),
-    ("factor_bytes", ""),
-    ("contact_columns", ""),
-    ("matrix_products", ""),
-    ("compliance_bytes", ""),
-    ("force_sweeps", ""),
-    ("element_updates", ""),
-    ("solves", ""),
-    ("status_iterations", ""),
-];
-
 const NEWTON: &[Key] = &[
     ("iterations", ""),
     ("iterations_per_step", ""),
     ("most_iterations", ""),
-    ("factorisations_per_step", ""),
     ("halvings", ""),
 ];
 
@@ -207,7 +192,8 @@ impl Names {
     }
 }
 
-/// The numbers of the summary of a model with their units; which of them a run has is known at its end.
+/// The numbers of the summary of a model with their units; which of them a run has is known at its end. Counts of the work are none of them: a run
+/// that goes on from a checkpoint has others.
 pub fn quantities(system: &System, settings: &Settings) -> Vec<Quantity> {
     let mut names = Names::default();
     names.add("time", TIME);
@@ -253,7 +239,6 @@ pub fn quantities(system: &System, settings: &Settings) -> Vec<Quantity> {
     if settings.zoning.is_some() {
         names.add("zones", ZONES);
     }
-    names.add("counts", COUNTS);
     if system.is_nonlinear() && settings.zoning.is_none() {
         names.add("newton", NEWTON);
     }
