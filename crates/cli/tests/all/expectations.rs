@@ -60,6 +60,15 @@ fn a_case_of_the_project_is_a_check_that_needs_no_source_tree() {
     assert_eq!(fs::read_dir(work.path()).unwrap().count(), 0);
 }
 
+#[test]
+fn a_template_has_no_rows_since_they_are_stated_for_the_case_that_it_is() {
+    let work = tempfile::tempdir().unwrap();
+    let output = carom(work.path(), &["new", "two-bars"]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let case = fs::read_to_string(work.path().join("case.toml")).unwrap();
+    assert!(case.ends_with("[reference.two-bars]\n"), "{case}");
+}
+
 /// Cases with rows that `carom verify` does not run: the check in the second place has their model, or they take long.
 const LEFT_OUT: [(&str, &str); 14] = [
     ("arlequin-block", "arlequin-block"),
