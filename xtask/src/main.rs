@@ -14,6 +14,7 @@ mod chapter;
 mod circles;
 mod commands;
 mod docs;
+mod expected;
 mod files;
 mod layers;
 mod lock;

@@ -1,4 +1,4 @@
-//! Files that pages show: case files and their pages, decisions, measured tables.
+//! Files that pages show: case files and their pages, decisions, measured tables; and tables of what cases must give ([`expected`]).
 //!
 //! The text stands in the page itself, between two comments, so that the page reads alike in the book and in the
 //! repository:
@@ -14,11 +14,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::expected;
 use crate::files::{is, list};
 use crate::place::beside;
 
 const BEGIN: &str = "<!-- include ";
 const CLOSE: &str = " -->";
+/// Folder of the cases, whose pages have tables of what they must give.
+const CASES: &str = "cases";
 const END: &str = "<!-- end -->";
 
 /// Pages whose included text is not that of the file.
@@ -49,20 +52,37 @@ fn pages(root: &Path) -> Vec<(PathBuf, Result<String, String>)> {
     let files = files.into_iter().filter(|file| is(file, "md"));
     let texts = files.filter_map(|file| {
         let text = fs::read_to_string(root.join(&file)).ok()?;
-        let holds = text.lines().any(|line| included(line).is_some());
+        let written = |line: &str| included(line).or(expected::named(line)).is_some();
+        let holds = text.lines().any(written);
         holds.then_some((file, text))
     });
     texts
         .map(|(file, text)| {
-            let read = |target: &str| {
-                let path = beside(&file, target);
-                fs::read_to_string(root.join(&path))
-                    .map_err(|cause| format!("includes {}: {cause}", path.display()))
+            let new = match file.starts_with(CASES) {
+                true => with_rows(root, &file, &text),
+                false => expand(&text, |target: &str| {
+                    let path = beside(&file, target);
+                    let text = read(root, &path)?;
+                    // a page of a case as it is to be
+                    match is(&path, "md") {
+                        true => with_rows(root, &path, &text),
+                        false => Ok(text),
+                    }
+                }),
             };
-            let new = expand(&text, read);
             (file, new)
         })
         .collect()
+}
+
+fn read(root: &Path, path: &Path) -> Result<String, String> {
+    let text = fs::read_to_string(root.join(path));
+    text.map_err(|cause| format!("includes {}: {cause}", path.display()))
+}
+
+/// The page of a case with the tables of what it must give.
+fn with_rows(root: &Path, page: &Path, text: &str) -> Result<String, String> {
+    expected::expand(text, |case| read(root, &beside(page, case)))
 }
 
 /// The target of a line that begins an included text.

@@ -173,6 +173,10 @@ pub(crate) fn accepted(root: &Value, schema: &Value) -> String {
             with_article(name)
         );
     }
+    if schema.get("x-any-dimension").is_some() {
+        let example = text("x-example");
+        return format!("a number, or a text with a unit such as {example:?}");
+    }
     if schema.get("x-length-unit").is_some() {
         return format!("a unit of length such as {:?}", text("x-example"));
     }

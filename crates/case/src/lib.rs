@@ -9,11 +9,13 @@ pub mod schema;
 mod accelerations;
 mod build;
 mod compare;
+mod complete;
 mod convergence;
 mod convert;
 mod describe;
 mod error;
 mod estimate;
+mod expect;
 mod facts;
 mod fit;
 mod input;
@@ -38,11 +40,9 @@ mod tree;
 mod validate;
 mod words;
 
-pub use build::{
-    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_to_look, build_with,
-    model,
-};
+pub use build::{AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, model};
 pub use compare::{Choices, compare};
+pub use complete::{build, build_to_look, build_with};
 pub use convert::{NotConverted, convert};
 pub use error::{Place, Problem};
 pub use estimate::{Estimate, estimate};

@@ -13,7 +13,7 @@ use crate::schema::Case;
 use crate::tree::join;
 
 /// What may change when a run goes on.
-const FREE: [&str; 3] = ["title", "output", "time.end"];
+const FREE: [&str; 4] = ["title", "output", "expect", "time.end"];
 
 /// The case of a run, as its checkpoints keep it.
 #[derive(Debug, Serialize, Deserialize)]
@@ -46,6 +46,18 @@ impl Origin {
             overrides: overrides.map(|source| source.text.clone()).collect(),
             files: fingerprints(&case_value, &input.folder),
             case: case_value,
+        }
+    }
+
+    /// That of no run, to ask what a run would have.
+    pub(crate) fn of_none() -> Origin {
+        Origin {
+            title: String::new(),
+            file: String::new(),
+            folder: PathBuf::new(),
+            overrides: Vec::new(),
+            case: Value::Null,
+            files: BTreeMap::new(),
         }
     }
 

@@ -67,6 +67,7 @@ const ORDER: &[&str] = &[
     "level",
     "output",
     "reference",
+    "expect",
 ];
 
 struct Page<'a> {

@@ -9,7 +9,8 @@ use carom_output::checkpoint::{self, Checkpoint};
 use carom_output::{Error, Folder, Results};
 use carom_ranks::Ranks;
 
-use crate::build::{Built, build};
+use crate::build::Built;
+use crate::complete::build;
 use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::locate::Locator;

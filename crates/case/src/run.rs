@@ -16,6 +16,7 @@ use thiserror::Error as ThisError;
 use crate::build::Built;
 use crate::convergence;
 use crate::describe::entries;
+use crate::expect::expected;
 use crate::input::Input;
 use crate::origin::Origin;
 use crate::schema::{Case, Field, Motion, Scheme};
@@ -232,6 +233,7 @@ pub(crate) fn settings(
             .collect(),
         levels: built.levels.clone(),
         allowables: built.allowables.clone(),
+        expected: expected(&built.expected, &origin.overrides),
         history_every: case.output.histories.map(|histories| histories.every.0),
         compress_histories: case.output.compress_histories,
         piece: None,

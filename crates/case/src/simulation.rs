@@ -40,7 +40,11 @@ impl Simulation {
             Some(folder) => {
                 let names: Vec<&str> = added.iter().map(|force| &*force.name).collect();
                 let origin = Origin::of(input, case, &folder).with_forces(&names);
-                let settings = settings((input, case, &built), folder, &origin);
+                let mut settings = settings((input, case, &built), folder, &origin);
+                if !names.is_empty() {
+                    let why = "they are stated for the file alone, without forces set by a program";
+                    settings.expected.unjudged = Some(why.to_owned());
+                }
                 let mut results = Results::create(settings, Arc::clone(&built.system))?;
                 results.accepted(run.get()).map_err(Failed::Step)?;
                 Some(results)

@@ -1,6 +1,6 @@
 //! Checks a case, as written, against the schema: every problem in one pass, each with its key path and place.
 //!
-//! Only the keywords that the schema uses are understood, among them `x-dimension` (a quantity) and `x-length-unit`; a test holds the
+//! Only the keywords that the schema uses are understood, among them `x-dimension` (a quantity), `x-any-dimension` and `x-length-unit`; a test holds the
 //! two together. Nothing is resolved here: names of groups, bodies and materials are stage two's.
 
 use std::collections::BTreeMap;

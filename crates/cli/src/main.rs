@@ -3,10 +3,13 @@
 //! Exit codes: 0 done and the verdict `good` or `look`, 2 bad input, 3 the run failed with the last good state on disk, 4 done but
 //! the verdict bad, 130 interrupted. All that it prints goes through [`terminal`].
 
+mod cases;
 mod check;
 mod compare;
+mod contacts;
 mod diagnostics;
 mod exit;
+mod expectations;
 mod load;
 mod modes;
 mod new;

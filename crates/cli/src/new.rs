@@ -138,7 +138,10 @@ pub fn new(template: Option<&str>, file: &Path) -> u8 {
     let mut files: Vec<(PathBuf, &[u8])> = beside
         .map(|(name, content)| (file.with_file_name(name), *content))
         .collect();
-    files.insert(0, (file.to_path_buf(), template.case.as_bytes()));
+    files.insert(
+        0,
+        (file.to_path_buf(), without_rows(template.case).as_bytes()),
+    );
     let mut made = Vec::new();
     for (path, content) in &files {
         let written = File::create_new(path).and_then(|mut target| {
@@ -163,6 +166,14 @@ pub fn new(template: Option<&str>, file: &Path) -> u8 {
         file.display()
     );
     0
+}
+
+/// A case without its rows of `[expect]`, which end it: whoever starts from it changes what they are stated for.
+fn without_rows(case: &str) -> &str {
+    match case.find("\n[expect.") {
+        Some(end) => &case[..end],
+        None => case,
+    }
 }
 
 /// Says why a file was not written; returns the exit code.

@@ -6,6 +6,7 @@ use carom_dynamics::System;
 use carom_output::plot::{Axis, Curve, Figure, Panel, Role};
 use carom_verification::{Compared, Shown, Size};
 
+use crate::cases::CHECKS;
 use crate::exit::{BAD, BAD_INPUT, FAILED};
 use crate::terminal;
 use crate::terminal::{err, line, out};
@@ -14,7 +15,7 @@ use crate::terminal::{err, line, out};
 pub fn verify(name: Option<&str>, quick: bool, report: Option<&Path>) -> u8 {
     let size = if quick { Size::Quick } else { Size::Full };
     let wanted = (size, report.is_some());
-    let found = carom_verification::verify(name, wanted, &mut terminal::StandardOutput);
+    let found = carom_verification::verify(CHECKS, name, wanted, &mut terminal::StandardOutput);
     let (verdict, made) = match found {
         Ok(found) => found,
         Err(error) => {
@@ -24,7 +25,8 @@ pub fn verify(name: Option<&str>, quick: bool, report: Option<&Path>) -> u8 {
     };
     if verdict.checks == 0 {
         let checks = carom_verification::checks();
-        let names: Vec<&str> = checks.iter().map(|check| check.name).collect();
+        let all = checks.iter().chain(CHECKS);
+        let names: Vec<&str> = all.map(|check| check.name).collect();
         let asked = line(name.unwrap_or_default());
         err!("error: no check has `{asked}` in its name");
         err!("  = accepted: a part of one of {}", names.join(", "));

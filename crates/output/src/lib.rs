@@ -10,6 +10,7 @@ mod absent;
 pub mod atomic;
 pub mod checkpoint;
 pub mod compare;
+pub mod expectations;
 pub mod folder;
 pub mod form;
 #[cfg(feature = "hdf5")]
@@ -46,8 +47,8 @@ pub use pvd::Collection;
 pub use report::Report;
 pub use results::{
     AllowableSettings, Bearer, BodyQuality, Checkpoints, Ending, Fields, LevelSettings, Piece,
-    Pieces, Probe, Reference, Results, Settings, Spectrum, Zoning, model_picture, qualities,
-    watched,
+    Pieces, Probe, Quantity, Reference, Results, Settings, Spectrum, Zoning, columns_with_units,
+    model_picture, qualities, quantities, watched,
 };
 pub use statistics::{Allowable, Check, Level, Margin, Statistics, takes_energy};
 pub use summary::Summary;

@@ -10,6 +10,7 @@ use std::path::Path;
 use minijinja::value::Serde;
 use minijinja::{Environment, HtmlEscape, Value, context};
 
+use crate::expectations::Expectations;
 use crate::form::{NOTHING, near, percent};
 use crate::page::anchors::section;
 use crate::page::{Data, PROGRAM, STYLE};
@@ -59,6 +60,7 @@ impl Report<'_> {
         let impacts: usize = contacts.map(|contact| contact.impacts).sum();
         let page = environment.get_template("report.html")?.render(context! {
             summary => Serde(self.summary),
+            expected => Serde(self.summary.expectations.as_ref().map(Expectations::told)),
             impacts => Serde(self.impacts),
             many => self.summary.contacts.values().any(|contact| contact.impacts > 1),
             hidden => impacts.saturating_sub(self.impacts.len()),

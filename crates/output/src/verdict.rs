@@ -168,6 +168,12 @@ impl Verdict {
         }
     }
 
+    /// Adds a line.
+    pub fn add(&mut self, line: Line) {
+        self.grade = self.grade.max(line.grade);
+        self.lines.push(line);
+    }
+
     /// Makes it that of a run that is not complete, for this reason; an earlier reason stays.
     pub fn incomplete(&mut self, why: String) {
         self.grade = Grade::Bad;

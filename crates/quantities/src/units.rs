@@ -35,6 +35,8 @@ const NAMED: &[(&str, &str, Dimension)] = &[
     ("moment of inertia", "kg*m^2", dimension(2, 1, 0)),
     ("mass per length", "kg/m", dimension(-1, 1, 0)),
     ("energy", "J", dimension(2, 1, -2)),
+    ("impulse", "N*s", dimension(1, 1, -1)),
+    ("angular momentum", "N*m*s", dimension(2, 1, -1)),
     ("moment", "N*m", dimension(2, 1, -2)),
     ("power", "W", dimension(2, 1, -3)),
     ("frequency", "Hz", dimension(0, 0, -1)),
@@ -55,6 +57,17 @@ impl Dimension {
             .iter()
             .find(|entry| entry.0 == name)
             .map(|entry| entry.2)
+    }
+
+    /// The dimension of a unit such as `N s`; a number has the unit `""`.
+    ///
+    /// # Errors
+    /// [`UnitError`]: an unknown unit.
+    pub fn of_unit(unit: &str) -> Result<Dimension, UnitError> {
+        match unit {
+            "" => Ok(dimension(0, 0, 0)),
+            unit => parse_unit(unit).map(|unit| unit.dimension),
+        }
     }
 
     /// The SI unit of this dimension, as a user would write it.
@@ -396,6 +409,10 @@ mod tests {
         assert_eq!(si("36 km/h", "velocity"), Ok(10.0));
         assert_eq!(si("2 min", "time"), Ok(120.0));
         assert_eq!(si("1.5 daN", "force"), Ok(15.0));
+        assert_eq!(si("3 mN s", "impulse"), Ok(3e-3));
+        assert_eq!(Dimension::of_unit("N m s"), Ok(dimension(2, 1, -1)));
+        assert_eq!(Dimension::of_unit("m/s²"), Ok(dimension(1, 0, -2)));
+        assert_eq!(Dimension::of_unit(""), Ok(dimension(0, 0, 0)));
     }
 
     #[test]

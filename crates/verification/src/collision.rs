@@ -1,15 +1,14 @@
 //! Two neo-Hookean bodies from a mesh file, one of which flies against the other.
 
-use std::path::Path;
-
 use carom_bodies::Kinematics;
 use carom_contact::{Integration, Law};
 use carom_dynamics::{Model, ModelBody, ModelTarget, Nonlinear, Scheme};
 use carom_materials::Elastic;
-use carom_mesh::{Mesh, read};
+use carom_mesh::Mesh;
 
 use crate::Error;
 use crate::build::{contact, neo_hooke, surface};
+use crate::meshes;
 
 /// Residual at which iterations end, of the forces.
 const TOLERANCE: f64 = 1e-11;
@@ -37,10 +36,9 @@ impl Collision {
     /// The model, with iterations to [`TOLERANCE`].
     ///
     /// # Errors
-    /// A mesh file that cannot be read.
+    /// No such mesh file.
     pub(crate) fn model(&self, scheme: Scheme, law: Law, dt: f64) -> Result<Model, Error> {
-        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
-        let mesh = read::read(&cases.join(self.mesh))?;
+        let mesh = meshes::mesh(self.mesh)?;
         let mut moving = self.body(&mesh, 0)?;
         moving.velocity = self.velocity;
         let resting = self.body(&mesh, 1)?;

@@ -12,19 +12,17 @@
 //! the speed at the end by 1e-4. The facets are flat and in line, so that with a plane, a second formulation, rounding alone differs: 1e-9 m.
 //! Balances as for the sliding block.
 
-use std::path::Path;
-
 use carom_bodies::Kinematics;
 use carom_contact::{Motion, Obstacle, Plane, RigidSurface, Translation};
 use carom_dynamics::{Driver, Model, ModelTarget};
 use carom_exact::friction::Incline;
 use carom_materials::Elastic;
-use carom_mesh::read::read;
 use carom_mesh::{Mesh, Surface};
 
 use crate::Error;
 use crate::build::{NOW, contact, group, neo_hooke, surface, theta};
 use crate::check::{Check, Row};
+use crate::meshes;
 use crate::sliding_block::{GRAVITY, balances, place};
 
 const RUBBER: Elastic = Elastic {
@@ -65,8 +63,7 @@ pub(crate) const CHECK: Check = Check {
     name: "conveyor",
     fact: "a crate that is set down on a belt slides until it has the speed of the belt, and half of the belt's work is heat",
     run: |_| {
-        let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/conveyor/crate.msh");
-        let mesh = read(&case)?;
+        let mesh = meshes::mesh("conveyor/crate.msh")?;
         let facets = Surface::of_facets(&mesh, group(&mesh, "belt")?, false)?;
         let facets = RigidSurface::new(&mesh, &facets);
         let plane = Plane {

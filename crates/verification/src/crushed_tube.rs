@@ -15,18 +15,17 @@
 //! a penetration after: parts of the wall that snap are faster than the tube.
 //! Sizes: quick 2 x 48 elements, the first 200 steps; full 2 x 96, 320 steps.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use carom_bodies::Kinematics;
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{Driver, Model, ModelTarget, Nonlinear, Scheme, System};
 use carom_materials::Elastic;
-use carom_mesh::read::read;
 
 use crate::Error;
 use crate::build::{NOW, contact, neo_hooke, plane, surface};
 use crate::check::{Check, Row, Size};
+use crate::meshes;
 
 const RUBBER: Elastic = Elastic {
     density: 1000.0,
@@ -42,8 +41,7 @@ const BALANCE: f64 = 1e-9;
 const REACH: f64 = 1.5;
 
 fn newton(mesh: &str, facing_itself: bool) -> Result<Driver, Error> {
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/crushed-tube");
-    let mesh = read(&cases.join(mesh))?;
+    let mesh = meshes::mesh(mesh)?;
     let mut tube = neo_hooke(
         &mesh,
         "tube",
@@ -138,8 +136,8 @@ pub(crate) const CHECK: Check = Check {
     fact: "a tube that a wall closes meets itself inside and nowhere else, and no part of it goes through another",
     run: |size| {
         let (mesh, steps) = match size {
-            Size::Quick => ("tube-coarse.msh", 200),
-            Size::Full => ("tube.msh", 320),
+            Size::Quick => ("crushed-tube/tube-coarse.msh", 200),
+            Size::Full => ("crushed-tube/tube.msh", 320),
         };
         let (mut tube, mut alone) = (newton(mesh, true)?, newton(mesh, false)?);
         let (mut met, mut difference, mut closed) = (0, 0.0_f64, 0);

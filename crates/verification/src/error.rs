@@ -48,6 +48,18 @@ pub enum Error {
     /// Zones of equal steps that are not one system.
     #[error("the zones step apart")]
     Apart,
+    /// A mesh file of a case is not embedded.
+    #[error("no mesh '{name}' is embedded")]
+    NoMesh {
+        /// Its name in the folder of the cases.
+        name: String,
+    },
+    /// A case of the project could not be built, run or judged.
+    #[error("{cause}")]
+    Case {
+        /// Why.
+        cause: String,
+    },
     /// A mesh lacks a group.
     #[error("the mesh has no group '{name}'")]
     Group {

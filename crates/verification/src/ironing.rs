@@ -24,19 +24,18 @@
 //! | mortar, μ = 0.3 | 1.11, 1.09, 1.10 | 0.28, 0.12, 0.070 | 0.94, 0.24, 0.061 |
 //! | node-to-face | 1.41, 0.40, 0.11 | 1.41, 0.40, 0.11 | 1.26, 0.34, 0.10 |
 
-use std::path::Path;
-
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration};
 use carom_dynamics::{
     Amplitude, Driver, Iteration, Model, ModelBody, ModelTarget, Nonlinear, Preload, Prescribed,
 };
 use carom_materials::Elastic;
-use carom_mesh::{Mesh, read};
+use carom_mesh::Mesh;
 
 use crate::Error;
 use crate::build::{DISPLACEMENT, contact, group, neo_hooke, newmark, support, surface};
 use crate::check::{Check, Row, Size};
+use crate::meshes;
 use crate::newton_order::{Iterations, OUT_OF_REACH};
 
 const MM: f64 = 1e-3;
@@ -72,8 +71,7 @@ fn elastic(mesh: &Mesh, name: &str, young: f64) -> Result<ModelBody, Error> {
 
 /// The model, one second to a step.
 fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Result<Model, Error> {
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/ironing");
-    let mut mesh = read::read(&cases.join(file))?;
+    let mut mesh = meshes::mesh(file)?;
     mesh.scale(MM);
     let bodies = vec![
         elastic(&mesh, "block", 68.96e7)?,
@@ -288,14 +286,15 @@ pub(crate) const CHECK: Check = Check {
         let mut rows = Vec::new();
         for (mu, [part, coarse, middle]) in [0.0, MU].into_iter().zip(OWN) {
             let name = |mesh: &str| format!("{mesh} mesh, μ = {mu}");
-            let file = "ironing-coarse.msh";
+            let file = "ironing/ironing-coarse.msh";
             if size == Size::Quick {
                 rows.extend(beside(&name("coarse"), file, mu, 40, part)?.0);
                 continue;
             }
             let (found, wide) = beside(&name("coarse"), file, mu, ALONG, coarse)?;
             rows.extend(found);
-            let (found, narrow) = beside(&name("middle"), "ironing.msh", mu, ALONG, middle)?;
+            let (found, narrow) =
+                beside(&name("middle"), "ironing/ironing.msh", mu, ALONG, middle)?;
             rows.extend(found);
             let falling = [
                 "mortar: jump after the turn of friction",

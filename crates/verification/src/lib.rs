@@ -23,6 +23,7 @@ mod hairpin;
 mod hertz;
 mod kept;
 mod kind;
+mod meshes;
 mod newton_order;
 mod page;
 mod plastic_wave;
@@ -359,17 +360,20 @@ pub mod inside {
     }
 }
 
-/// Runs all cases, or those whose name contains `filter`, and writes one line per row; returns what each found too, and where somebody
-/// `looks` what it has shown.
+/// Runs all checks and `more` of them, or those whose name contains `filter`, and writes one line per row; returns what each found too, and
+/// where somebody `looks` what it has shown.
 ///
 /// # Errors
 /// Of `out`, and if no threads can be started; a case that cannot be computed is written and counted as failed.
 pub fn verify(
+    more: &[Check],
     filter: Option<&str>,
     (size, looks): (Size, bool),
     out: &mut dyn Write,
 ) -> io::Result<(Verdict, Vec<Made>)> {
-    check::verify(&checks(), filter, (size, looks), out)
+    let mut all = checks();
+    all.extend_from_slice(more);
+    check::verify(&all, filter, (size, looks), out)
 }
 
 /// What cases found as a page of HTML, with the problem, the reference and the reason for the tolerance of each. `draw`: pictures of what a

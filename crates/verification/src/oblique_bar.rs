@@ -17,18 +17,16 @@
 //! law gains energy without bound (its ledger closes: contact works), which is shown on the coarse mesh.
 //! Sizes: quick 20 x 4 elements, full 50 x 10.
 
-use std::path::Path;
-
 use carom_bodies::Kinematics;
 use carom_contact::{Basis, Integration, Law};
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{Driver, Model, Nonlinear, Scheme};
 use carom_materials::Elastic;
-use carom_mesh::read::read;
 
 use crate::Error;
 use crate::build::{DISPLACEMENT, NOW, contact, neo_hooke, newmark, plane, surface, theta};
 use crate::check::{Check, Row, Size};
+use crate::meshes;
 
 const RUBBER: Elastic = Elastic {
     density: 1000.0,
@@ -46,15 +44,14 @@ const BALANCE: f64 = 1e-9;
 /// Elements along the bar and its mesh.
 fn mesh_of(size: Size) -> (f64, &'static str) {
     match size {
-        Size::Quick => (20.0, "bar-coarse.msh"),
-        Size::Full => (50.0, "bar.msh"),
+        Size::Quick => (20.0, "oblique-bar/bar-coarse.msh"),
+        Size::Full => (50.0, "oblique-bar/bar.msh"),
     }
 }
 
 fn model(size: Size, scheme: Scheme, law: Law, integration: Integration) -> Result<Model, Error> {
     let (along, file) = mesh_of(size);
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/oblique-bar");
-    let mut mesh = read(&cases.join(file))?;
+    let mut mesh = meshes::mesh(file)?;
     mesh.scale(1e-3);
     let kinematics = Kinematics::PlaneStrain { thickness: 1.0 };
     let mut bar = neo_hooke(&mesh, "bar", kinematics, RUBBER)?;

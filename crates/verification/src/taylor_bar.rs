@@ -21,16 +21,15 @@
 //! regressions, to 1 % of the figure.
 //! Sizes: quick, axisymmetric: theta to the end, central differences for the first 20 µs; full, all four to the end.
 
-use std::path::Path;
-
 use carom_bodies::{BodySpec, Formulation, Kinematics};
 use carom_dynamics::{Driver, Model, ModelBody, Scheme, Support};
 use carom_materials::{Elastic, J2Plasticity, Law};
-use carom_mesh::{Mesh, generate, read};
+use carom_mesh::{Mesh, generate};
 
 use crate::Error;
 use crate::build::{CENTRAL, HALF, contact, group, plane, support, surface, theta};
 use crate::check::{Check, Row, Size};
+use crate::meshes;
 
 const COPPER: J2Plasticity = J2Plasticity {
     initial: Elastic {
@@ -71,8 +70,7 @@ impl Bar {
 
     /// A quarter in space, of 12 by 20 hexahedra.
     fn solid(scheme: Scheme, dt: f64) -> Result<Bar, Error> {
-        let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases");
-        let mut mesh = read::read(&cases.join("taylor-bar/bar-solid-coarse.msh"))?;
+        let mut mesh = meshes::mesh("taylor-bar/bar-solid-coarse.msh")?;
         mesh.scale(1e-3);
         let supports = vec![
             support(&mesh, "bar.mirror-x", [true, false, false])?,

@@ -54,6 +54,7 @@ mod zones;
 use std::sync::Arc;
 
 use carom_dynamics::{Model, Nonlinear, System};
+use carom_output::expectations::Expected;
 use carom_output::{AllowableSettings, LevelSettings, Spectrum};
 use carom_zones::Zoned;
 
@@ -90,6 +91,8 @@ pub struct Built {
     pub levels: Vec<LevelSettings>,
     /// What bodies, supports, springs and bolts may bear.
     pub allowables: Vec<AllowableSettings>,
+    /// What a run must give; filled in once all else is built.
+    pub expected: Expected,
     /// Probes, in the order of their names.
     pub probes: Vec<BuiltProbe>,
     /// The exact solution that the case names.
@@ -116,6 +119,7 @@ impl Built {
             stage: None,
             levels: Vec::new(),
             allowables: Vec::new(),
+            expected: Expected::default(),
             probes: Vec::new(),
             reference: None,
             warnings: Vec::new(),
@@ -387,6 +391,7 @@ impl Builder<'_> {
             stage: self.case.time.stage.map(|stage| (stage.end.0, stage.steps)),
             levels,
             allowables,
+            expected: Expected::default(),
             probes,
             reference,
             warnings: std::mem::take(&mut self.warnings),

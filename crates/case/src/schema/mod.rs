@@ -9,6 +9,7 @@ mod beam;
 mod body;
 mod contact;
 mod discrete;
+mod expect;
 mod explicit;
 mod joint;
 mod load;
@@ -49,6 +50,7 @@ pub use contact::{
     IntegrationWith, MaterialPair, Mortar, Nodes, Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
+pub use expect::{Amount, Expect, ExpectKind, Take};
 pub use explicit::{BulkViscosity, Deletion, MassScaling};
 pub use joint::{
     AddedMass, Channel, Constraint, ConstraintTerm, FluidGap, Foundation, Hinge, RigidLink,
@@ -174,6 +176,9 @@ pub struct Case {
     pub output: Output,
     /// An exact solution to compare with.
     pub reference: Option<Reference>,
+    /// What a run of this file must give, by name.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub expect: Named<Expect>,
 }
 
 /// Whether `name` matches the pattern of names.

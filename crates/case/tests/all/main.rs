@@ -17,6 +17,7 @@ mod compare;
 mod damaged;
 mod defaults;
 mod events;
+mod expect;
 mod false_bad;
 mod forged;
 mod general;

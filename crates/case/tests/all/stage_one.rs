@@ -318,6 +318,7 @@ fn the_schema_uses_only_keywords_that_the_check_understands() {
         "title",
         "type",
         "uniqueItems",
+        "x-any-dimension",
         "x-dimension",
         "x-example",
         "x-length-unit",

@@ -7,6 +7,7 @@ mod bad_input;
 mod before;
 mod commands;
 mod compare;
+mod expectations;
 mod folders;
 mod inputs;
 mod resume;

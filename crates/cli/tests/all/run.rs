@@ -163,6 +163,8 @@ fn a_contact_problem_without_solution_ends_the_run_and_is_kept() {
     case("two-bars", work.path());
     let file = work.path().join("case.toml");
     let text = fs::read_to_string(&file).unwrap();
+    // the rows of what the case must give name numbers of the exact solution
+    let text = text.split("\n[expect").next().unwrap();
     // the same contact from its other side too: the forces of the two cannot be told apart
     let (start, end) = (
         text.find("[contact.shock]").unwrap(),

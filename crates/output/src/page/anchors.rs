@@ -23,6 +23,7 @@ pub fn section(line: &str) -> &'static str {
         | "compressed-bolt" => "model",
         line if line.starts_with("small-sliding") => "model",
         "added-mass" => "work",
+        "expectations" => "expectations",
         _ => "verdict",
     }
 }

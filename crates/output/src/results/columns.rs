@@ -8,7 +8,7 @@ use crate::Error;
 use crate::history::column;
 use crate::results::Settings;
 use crate::results::probed::Cells;
-use crate::results::sensor::{COMPONENTS, ContactPoint};
+use crate::results::sensor::{COMPONENTS, ContactPoint, contact_point};
 use crate::rows::unique;
 
 /// What a probe of a contact tells, with its unit.
@@ -83,6 +83,15 @@ pub(super) fn contact_columns(system: &System, k: usize) -> Vec<String> {
         names.extend([add("friction", "N"), add("slipping points", "")]);
     }
     names
+}
+
+/// Names of the columns that a run will have.
+///
+/// # Errors
+/// [`Error::TwinColumns`].
+pub(super) fn column_names(system: &System, settings: &Settings) -> Result<Vec<String>, Error> {
+    let point = contact_point(system, settings.reference.as_ref(), None);
+    columns(system, settings, point.as_ref())
 }
 
 /// Names of the columns.

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use carom_dynamics::{ContactRecord, Ledger, System};
 
 use crate::plot::{Logarithmic, model_figure, unless_empty};
+use crate::results::columns::files;
 use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
 use crate::results::film::film;
@@ -40,6 +41,7 @@ fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
     let path = keep(results.folder.file("summary.json"), &mut errors);
     let cause = ending.unfinished.clone();
     let mut summary = summary(&results, ending, cause.or_else(|| first(&errors)));
+    keep(expect(&results, &mut summary), &mut errors);
     if let Some(path) = report {
         let (of_cells, quality) = qualities(&results.system);
         let sources = Sources {
@@ -70,6 +72,29 @@ fn conclude(mut results: Results, ending: &Ending) -> Result<Summary, Error> {
         Some(error) => Err(error),
         None => Ok(summary),
     }
+}
+
+/// Judges the rows of what the case must give, if there are some: the verdict has a line on them.
+fn expect(results: &Results, summary: &mut Summary) -> Result<(), Error> {
+    let expected = &results.settings.expected;
+    if expected.rows.is_empty() {
+        return Ok(());
+    }
+    let unfinished = summary.verdict.unfinished.is_some();
+    let [histories, _] = files(&results.settings);
+    let histories = results.folder.path().join(histories);
+    let values = serde_json::to_value(&*summary)?;
+    let found = expected.judge(&values, &histories, unfinished)?;
+    match (&found.unjudged, found.line()) {
+        (_, Some(line)) => summary.verdict.add(line),
+        (Some(why), None) => {
+            let unchecked = format!("the rows of `[expect]`: {why}");
+            summary.verdict.unchecked.push(unchecked);
+        }
+        (None, None) => {}
+    }
+    summary.expectations = Some(found);
+    Ok(())
 }
 
 fn first(errors: &[Error]) -> Option<String> {
@@ -166,6 +191,7 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         pretensions,
         loads: results.loads.all(system),
         maxima: largest::maxima(results),
+        expectations: None,
         allowables: allowables::checks(results, &largest::stills(results)),
         energy,
         momentum,

@@ -33,6 +33,7 @@ mod largest;
 mod lines;
 mod loads;
 mod meetings;
+mod names;
 pub(crate) mod outlines;
 pub(crate) mod page;
 mod pieces;
@@ -75,6 +76,7 @@ use sensor::ContactPoint;
 use support_peaks::SupportPeaks;
 
 pub use inspect::model_picture;
+pub use names::{Quantity, columns_with_units, quantities};
 pub use page::quality::{BodyQuality, qualities};
 pub use page::tiles::Tile;
 pub use pieces::Piece;

@@ -8,6 +8,7 @@ use carom_dynamics::Costs;
 use carom_exact::Solution;
 use carom_mesh::ElementId;
 
+use crate::expectations::Expected;
 use crate::results::Zoning;
 use crate::results::pieces::Piece;
 use crate::statistics::Allowable;
@@ -38,6 +39,8 @@ pub struct Settings {
     pub levels: Vec<LevelSettings>,
     /// What bodies, supports, springs and bolts may bear.
     pub allowables: Vec<AllowableSettings>,
+    /// What the case must give.
+    pub expected: Expected,
     /// Time between two rows of `histories.csv`, s; `None`: a row for every step.
     pub history_every: Option<f64>,
     /// Whether `histories.csv` and `contact.csv` are compressed, with `.gz` after their names.

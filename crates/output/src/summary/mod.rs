@@ -11,6 +11,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use crate::expectations::Expectations;
 use crate::form::near;
 use crate::maxima::Maxima;
 use crate::statistics::{Check, Level};
@@ -59,6 +60,9 @@ pub struct Summary {
     /// What bodies, supports, springs and bolts had to bear, where the case says what they may.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowables: Vec<Check>,
+    /// What the case must give, with what the run gave; absent where the case says nothing.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub expectations: Option<Expectations>,
     /// Balance of energy.
     pub energy: Energy,
     /// Balance of linear momentum.

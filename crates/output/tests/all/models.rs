@@ -150,6 +150,7 @@ pub fn settings(folder: &Path) -> Settings {
         contact_filters: Default::default(),
         levels: Vec::new(),
         allowables: Vec::new(),
+        expected: carom_output::expectations::Expected::default(),
         history_every: None,
         compress_histories: false,
         fields: None,

@@ -54,6 +54,7 @@ fn sample(verdict: Verdict) -> Summary {
         discrete: BTreeMap::new(),
         pretensions: BTreeMap::new(),
         maxima: Default::default(),
+        expectations: None,
         allowables: Vec::new(),
         energy,
         momentum: Momentum {
