@@ -202,10 +202,10 @@ pub fn quantities(system: &System, settings: &Settings) -> Vec<Quantity> {
         let table = format!("contacts.{}", contact.name);
         names.add(&table, CONTACT);
         names.add(&format!("{table}.statistics"), STATISTICS);
-        if system.moments[k].is_some() {
+        if system.contacts[k].moment.is_some() {
             names.add(&format!("{table}.peak_moment"), MOMENT);
         }
-        if system.friction[k] > 0.0 {
+        if system.contacts[k].friction > 0.0 {
             names.add(&format!("{table}.friction"), FRICTION);
         }
     }
