@@ -7,7 +7,6 @@
 pub mod schema;
 
 mod accelerations;
-mod build;
 mod compare;
 mod convergence;
 mod convert;
@@ -19,6 +18,7 @@ mod fit;
 mod input;
 mod keys;
 mod locate;
+mod lower;
 mod mesh_facts;
 mod modes;
 mod offenders;
@@ -38,10 +38,6 @@ mod tree;
 mod validate;
 mod words;
 
-pub use build::{
-    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_to_look, build_with,
-    model,
-};
 pub use compare::{Choices, compare};
 pub use convert::{NotConverted, convert};
 pub use error::{Place, Problem};
@@ -50,6 +46,10 @@ pub use facts::Fact;
 pub use fit::{Fit, fit};
 pub use input::{Input, Source};
 pub use locate::Locator;
+pub use lower::{
+    AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, build, build_to_look, build_with,
+    model,
+};
 pub use mesh_facts::mesh_facts;
 pub use modes::{Modal, ModesError, modes};
 pub use offenders::Offenders;
