@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::problems::Problems;
+use crate::error::Problem;
+
 use carom_dynamics::Amplitude;
 use carom_signals::Record;
 
@@ -24,5 +27,35 @@ impl Course {
     }
 }
 
-/// Signals by name; `None` of those with a problem.
-pub(super) type Signals = BTreeMap<String, Option<Course>>;
+/// The signals of a case.
+#[derive(Default)]
+pub(super) struct Signals {
+    /// By name; `None` of those with a problem.
+    pub(super) courses: BTreeMap<String, Option<Course>>,
+    /// What they have in words, by name.
+    pub(super) words: Vec<(String, String)>,
+}
+
+/// A function of time, or a problem at the first time that does not ascend.
+pub(super) fn amplitude(
+    path: &str,
+    points: Vec<[f64; 2]>,
+    problems: &mut Problems,
+) -> Option<Amplitude> {
+    let times: Vec<f64> = points.iter().map(|point| point[0]).collect();
+    ascending(path, &times, problems);
+    Amplitude::new(points).ok()
+}
+
+/// Refuses times that do not ascend.
+pub(super) fn ascending(path: &str, times: &[f64], problems: &mut Problems) {
+    let late = |k: &usize| times[*k] <= times[k - 1];
+    if let Some(k) = (1..times.len()).find(late) {
+        let problem = Problem::new(format!("{path}[{k}].time"), "the times must ascend");
+        problems.push(
+            problem
+                .found(format!("{} s", times[k]))
+                .accepted([format!("more than {} s", times[k - 1])]),
+        );
+    }
+}

@@ -5,7 +5,9 @@ use carom_dynamics::ModelDiscrete;
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Group, Mesh};
 
-use super::{Builder, plural};
+use super::context::Context;
+use super::lookup;
+use super::problems::{Problems, plural};
 use crate::error::Problem;
 use crate::schema::{self, AddedMass};
 
@@ -15,207 +17,211 @@ const BESIDE: f64 = 1e-6;
 /// An inner and an outer node, and the length that they stand for, m.
 type Pair = ([u32; 2], f64);
 
-impl Builder<'_> {
-    /// Stiffness of an elastic foundation along the axes of the section, N/m²; `path`: of the section.
-    pub(super) fn foundation(
-        &mut self,
-        mesh: &Mesh,
-        path: &str,
-        given: Option<schema::Foundation>,
-    ) -> Option<[f64; 3]> {
-        let Some(given) = given else {
-            return Some([0.0; 3]);
-        };
-        if mesh.dim == 2 && given.z.is_some() {
-            let problem = Problem::new(
-                format!("{path}.foundation.z"),
-                "in the plane nothing moves along z",
-            );
-            self.problems.push(problem.accepted(["x", "y"]));
-            return None;
-        }
-        Some([given.x, given.y, given.z].map(|k| k.map_or(0.0, |k| k.0)))
+/// Stiffness of an elastic foundation along the axes of the section, N/m²; `path`: of the section.
+pub(super) fn foundation(
+    mesh: &Mesh,
+    path: &str,
+    given: Option<schema::Foundation>,
+    problems: &mut Problems,
+) -> Option<[f64; 3]> {
+    let Some(given) = given else {
+        return Some([0.0; 3]);
+    };
+    if mesh.dim == 2 && given.z.is_some() {
+        let problem = Problem::new(
+            format!("{path}.foundation.z"),
+            "in the plane nothing moves along z",
+        );
+        problems.push(problem.accepted(["x", "y"]));
+        return None;
     }
+    Some([given.x, given.y, given.z].map(|k| k.map_or(0.0, |k| k.0)))
+}
 
-    /// Masses per length of the fluid around a section of this outer diameter, kg/m: what moves with it, and what it displaces.
-    pub(super) fn added_mass(
-        &mut self,
-        path: &str,
-        given: Option<AddedMass>,
-        diameter: Option<f64>,
-    ) -> Option<[f64; 2]> {
-        let channel = match given {
-            None => return Some([0.0; 2]),
-            Some(AddedMass::PerLength(mass)) => return Some([mass.0, 0.0]),
-            Some(AddedMass::Channel(channel)) => channel,
+/// Masses per length of the fluid around a section of this outer diameter, kg/m: what moves with it, and what it displaces.
+pub(super) fn added_mass(
+    path: &str,
+    given: Option<AddedMass>,
+    diameter: Option<f64>,
+    problems: &mut Problems,
+) -> Option<[f64; 2]> {
+    let channel = match given {
+        None => return Some([0.0; 2]),
+        Some(AddedMass::PerLength(mass)) => return Some([mass.0, 0.0]),
+        Some(AddedMass::Channel(channel)) => channel,
+    };
+    let path = format!("{path}.added-mass.channel");
+    let Some(diameter) = diameter else {
+        let problem = Problem::new(
+            path,
+            "the added mass in a channel is known of round sections",
+        );
+        problems.push(problem.accepted(["shape.circle", "shape.tube", "`per-length`"]));
+        return None;
+    };
+    let outer = channel.diameter.0;
+    if outer <= diameter {
+        let problem = Problem::new(
+            format!("{path}.diameter"),
+            "the channel is not around the section",
+        );
+        problems.push(
+            problem
+                .found(format!("{outer} m"))
+                .accepted([format!("more than {diameter} m")]),
+        );
+        return None;
+    }
+    Some(FluidGap::around(
+        channel.density.0,
+        [0.5 * diameter, 0.5 * outer],
+    ))
+}
+
+/// The fluids in gaps; their cells are added to the mesh.
+pub(super) fn lower(
+    context: &Context,
+    mesh: &mut Mesh,
+    problems: &mut Problems,
+) -> Vec<ModelDiscrete> {
+    let mut made = Vec::new();
+    for (name, fluid) in context.case.fluid.iter() {
+        let path = format!("fluid.{name}");
+        let Some(per_length) = fluid_per_length(&path, fluid, problems) else {
+            continue;
         };
-        let path = format!("{path}.added-mass.channel");
-        let Some(diameter) = diameter else {
-            let problem = Problem::new(
-                path,
-                "the added mass in a channel is known of round sections",
-            );
-            self.problems
-                .push(problem.accepted(["shape.circle", "shape.tube", "`per-length`"]));
-            return None;
+        let Some((pairs, axis)) = beside(mesh, &path, fluid, problems) else {
+            continue;
         };
-        let outer = channel.diameter.0;
-        if outer <= diameter {
+        // pairs that stand for the same length are one set
+        let mut sets: Vec<(f64, Vec<ElementId>)> = Vec::new();
+        for (nodes, length) in pairs {
+            let cell = mesh.push(Kind::Bar2, &nodes);
+            let same = |(other, _): &&mut (f64, Vec<ElementId>)| {
+                (*other - length).abs() <= BESIDE * length
+            };
+            match sets.iter_mut().find(same) {
+                Some((_, cells)) => cells.push(cell),
+                None => sets.push((length, vec![cell])),
+            }
+        }
+        for (k, (length, cells)) in sets.into_iter().enumerate() {
+            let name = match k {
+                0 => name.to_owned(),
+                _ => format!("{name}.{}", k + 1),
+            };
+            made.push(ModelDiscrete::new(DiscreteSpec {
+                name,
+                cells,
+                kind: DiscreteKind::Fluid(FluidGap {
+                    masses: per_length.map(|mass| mass * length),
+                    axis: Some(axis),
+                    width: fluid
+                        .diameters
+                        .map(|[inner, outer]| 0.5 * (outer.0 - inner.0)),
+                }),
+            }));
+        }
+    }
+    made
+}
+
+/// Masses of a fluid per length, kg/m.
+fn fluid_per_length(
+    path: &str,
+    fluid: &schema::FluidGap,
+    problems: &mut Problems,
+) -> Option<[f64; 3]> {
+    let (Some(diameters), Some(density)) = (fluid.diameters, fluid.density) else {
+        return fluid.relative_mass.map(|mass| [mass.0, -mass.0, mass.0]);
+    };
+    let [inner, outer] = diameters.map(|d| 0.5 * d.0);
+    if inner < outer {
+        return Some(FluidGap::new(density.0, [inner, outer], 1.0).masses);
+    }
+    let message = "no gap is between these diameters";
+    let problem = Problem::new(format!("{path}.diameters"), message);
+    let found = format!("{} m and {} m", 2.0 * inner, 2.0 * outer);
+    let accepted = "the inner one first, and less than the outer one";
+    problems.push(problem.found(found).accepted([accepted]));
+    None
+}
+
+/// Pairs of nodes beside each other with the length that each stands for (m), and the axis.
+fn beside(
+    mesh: &Mesh,
+    path: &str,
+    fluid: &schema::FluidGap,
+    problems: &mut Problems,
+) -> Option<(Vec<Pair>, [f64; 3])> {
+    let inner = problems.group(mesh, &format!("{path}.inner"), &fluid.inner)?;
+    let outer = problems.group(mesh, &format!("{path}.outer"), &fluid.outer)?;
+    if let (Some(length), Some(axis)) = (fluid.length, &fluid.axis) {
+        let nodes = [inner, outer].map(|group| mesh.group_nodes(group));
+        let axis = lookup::normal(mesh, &format!("{path}.axis"), axis, problems)?;
+        return match [&nodes[0][..], &nodes[1][..]] {
+            [[one], [other]] => Some((vec![([*one, *other], length.0)], axis)),
+            _ => {
+                let problem =
+                    Problem::new(format!("{path}.length"), "a length is that of one node");
+                let found = format!(
+                    "{} and {}",
+                    plural(nodes[0].len(), "node"),
+                    plural(nodes[1].len(), "node")
+                );
+                let accepted = ["groups of one node", "groups of lines, without `length`"];
+                problems.push(problem.found(found).accepted(accepted));
+                None
+            }
+        };
+    }
+    let lines = |group: &Group| group.dim == 1;
+    if !lines(inner) || !lines(outer) {
+        let key = if lines(inner) { "outer" } else { "inner" };
+        let problem = Problem::new(format!("{path}.{key}"), "a fluid gap is along lines");
+        let accepted = [
+            "a group of bars or beams",
+            "a group of one node with `length` and `axis`",
+        ];
+        problems.push(problem.accepted(accepted));
+        return None;
+    }
+    let (own, others) = (mesh.group_nodes(inner), mesh.group_nodes(outer));
+    let [from, to] = [own.first()?, own.last()?].map(|&node| mesh.nodes[node as usize]);
+    let way = [0, 1, 2].map(|i| to[i] - from[i]);
+    let size = way.iter().map(|w| w * w).sum::<f64>().sqrt();
+    let axis = way.map(|w| w / size);
+    let place = |node: u32| -> f64 {
+        let x = mesh.nodes[node as usize];
+        (0..3).map(|i| axis[i] * (x[i] - from[i])).sum()
+    };
+    let mut pairs: Vec<Pair> = Vec::new();
+    for &node in &own {
+        let off = |other: &&u32| (place(**other) - place(node)).abs();
+        let nearest = others.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        if off(&nearest) > BESIDE * size {
             let problem = Problem::new(
-                format!("{path}.diameter"),
-                "the channel is not around the section",
+                format!("{path}.outer"),
+                "nodes of the two bodies must stand beside each other along the axis",
             );
-            self.problems.push(
+            problems.push(
                 problem
-                    .found(format!("{outer} m"))
-                    .accepted([format!("more than {diameter} m")]),
+                    .found(format!(
+                        "{}, none within {:.3e} m of node {node} of the inner body",
+                        plural(others.len(), "node"),
+                        BESIDE * size
+                    ))
+                    .accepted(["bodies with the same division along the axis"]),
             );
             return None;
         }
-        Some(FluidGap::around(
-            channel.density.0,
-            [0.5 * diameter, 0.5 * outer],
-        ))
-    }
-
-    /// The fluids in gaps; their cells are added to the mesh.
-    pub(super) fn fluids(&mut self, mesh: &mut Mesh) -> Vec<ModelDiscrete> {
-        let mut made = Vec::new();
-        for (name, fluid) in self.case.fluid.iter() {
-            let path = format!("fluid.{name}");
-            let Some(per_length) = self.fluid_per_length(&path, fluid) else {
-                continue;
-            };
-            let Some((pairs, axis)) = self.beside(mesh, &path, fluid) else {
-                continue;
-            };
-            // pairs that stand for the same length are one set
-            let mut sets: Vec<(f64, Vec<ElementId>)> = Vec::new();
-            for (nodes, length) in pairs {
-                let cell = mesh.push(Kind::Bar2, &nodes);
-                let same = |(other, _): &&mut (f64, Vec<ElementId>)| {
-                    (*other - length).abs() <= BESIDE * length
-                };
-                match sets.iter_mut().find(same) {
-                    Some((_, cells)) => cells.push(cell),
-                    None => sets.push((length, vec![cell])),
-                }
-            }
-            for (k, (length, cells)) in sets.into_iter().enumerate() {
-                let name = match k {
-                    0 => name.to_owned(),
-                    _ => format!("{name}.{}", k + 1),
-                };
-                made.push(ModelDiscrete::new(DiscreteSpec {
-                    name,
-                    cells,
-                    kind: DiscreteKind::Fluid(FluidGap {
-                        masses: per_length.map(|mass| mass * length),
-                        axis: Some(axis),
-                        width: fluid
-                            .diameters
-                            .map(|[inner, outer]| 0.5 * (outer.0 - inner.0)),
-                    }),
-                }));
-            }
-        }
-        made
-    }
-
-    /// Masses of a fluid per length, kg/m.
-    fn fluid_per_length(&mut self, path: &str, fluid: &schema::FluidGap) -> Option<[f64; 3]> {
-        let (Some(diameters), Some(density)) = (fluid.diameters, fluid.density) else {
-            return fluid.relative_mass.map(|mass| [mass.0, -mass.0, mass.0]);
+        let around = |id: &&ElementId| mesh.element_nodes(**id).contains(&node);
+        let half = |id: &ElementId| {
+            let nodes = mesh.element_nodes(*id);
+            0.5 * (place(nodes[1]) - place(nodes[0])).abs()
         };
-        let [inner, outer] = diameters.map(|d| 0.5 * d.0);
-        if inner < outer {
-            return Some(FluidGap::new(density.0, [inner, outer], 1.0).masses);
-        }
-        let message = "no gap is between these diameters";
-        let problem = Problem::new(format!("{path}.diameters"), message);
-        let found = format!("{} m and {} m", 2.0 * inner, 2.0 * outer);
-        let accepted = "the inner one first, and less than the outer one";
-        self.problems
-            .push(problem.found(found).accepted([accepted]));
-        None
+        let length = inner.elements.iter().filter(around).map(half).sum();
+        pairs.push(([node, *nearest], length));
     }
-
-    /// Pairs of nodes beside each other with the length that each stands for (m), and the axis.
-    fn beside(
-        &mut self,
-        mesh: &Mesh,
-        path: &str,
-        fluid: &schema::FluidGap,
-    ) -> Option<(Vec<Pair>, [f64; 3])> {
-        let inner = self.group(mesh, &format!("{path}.inner"), &fluid.inner)?;
-        let outer = self.group(mesh, &format!("{path}.outer"), &fluid.outer)?;
-        if let (Some(length), Some(axis)) = (fluid.length, &fluid.axis) {
-            let nodes = [inner, outer].map(|group| mesh.group_nodes(group));
-            let axis = self.normal(mesh, &format!("{path}.axis"), axis)?;
-            return match [&nodes[0][..], &nodes[1][..]] {
-                [[one], [other]] => Some((vec![([*one, *other], length.0)], axis)),
-                _ => {
-                    let problem =
-                        Problem::new(format!("{path}.length"), "a length is that of one node");
-                    let found = format!(
-                        "{} and {}",
-                        plural(nodes[0].len(), "node"),
-                        plural(nodes[1].len(), "node")
-                    );
-                    let accepted = ["groups of one node", "groups of lines, without `length`"];
-                    self.problems.push(problem.found(found).accepted(accepted));
-                    None
-                }
-            };
-        }
-        let lines = |group: &Group| group.dim == 1;
-        if !lines(inner) || !lines(outer) {
-            let key = if lines(inner) { "outer" } else { "inner" };
-            let problem = Problem::new(format!("{path}.{key}"), "a fluid gap is along lines");
-            let accepted = [
-                "a group of bars or beams",
-                "a group of one node with `length` and `axis`",
-            ];
-            self.problems.push(problem.accepted(accepted));
-            return None;
-        }
-        let (own, others) = (mesh.group_nodes(inner), mesh.group_nodes(outer));
-        let [from, to] = [own.first()?, own.last()?].map(|&node| mesh.nodes[node as usize]);
-        let way = [0, 1, 2].map(|i| to[i] - from[i]);
-        let size = way.iter().map(|w| w * w).sum::<f64>().sqrt();
-        let axis = way.map(|w| w / size);
-        let place = |node: u32| -> f64 {
-            let x = mesh.nodes[node as usize];
-            (0..3).map(|i| axis[i] * (x[i] - from[i])).sum()
-        };
-        let mut pairs: Vec<Pair> = Vec::new();
-        for &node in &own {
-            let off = |other: &&u32| (place(**other) - place(node)).abs();
-            let nearest = others.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
-            if off(&nearest) > BESIDE * size {
-                let problem = Problem::new(
-                    format!("{path}.outer"),
-                    "nodes of the two bodies must stand beside each other along the axis",
-                );
-                self.problems.push(
-                    problem
-                        .found(format!(
-                            "{}, none within {:.3e} m of node {node} of the inner body",
-                            plural(others.len(), "node"),
-                            BESIDE * size
-                        ))
-                        .accepted(["bodies with the same division along the axis"]),
-                );
-                return None;
-            }
-            let around = |id: &&ElementId| mesh.element_nodes(**id).contains(&node);
-            let half = |id: &ElementId| {
-                let nodes = mesh.element_nodes(*id);
-                0.5 * (place(nodes[1]) - place(nodes[0])).abs()
-            };
-            let length = inner.elements.iter().filter(around).map(half).sum();
-            pairs.push(([node, *nearest], length));
-        }
-        Some((pairs, axis))
-    }
+    Some((pairs, axis))
 }

@@ -15,8 +15,9 @@ use carom_bodies::Kinematics;
 use carom_dynamics::{ModelBody, ModelConstraint, PrescribedTurn, Support};
 use carom_mesh::{ElementId, Mesh, Parts};
 
-use super::Builder;
-use super::arlequin::is_thin;
+use super::context::Context;
+use super::joints::is_thin;
+use super::problems::Problems;
 use crate::error::Problem;
 
 /// A node of a solid, and the axes about which a body may turn there.
@@ -35,59 +36,63 @@ pub(super) struct Joined<'a> {
 /// Solids by the nodes that they share with beams and shells.
 type Shared = BTreeMap<u32, Vec<usize>>;
 
-impl Builder<'_> {
-    /// Refuses hinges between a beam or a shell and a solid that its body does not ask for, and bodies that ask for none.
-    pub(super) fn hinges_to_solids(&mut self, mesh: &Mesh, bodies: &[ModelBody], joined: &Joined) {
-        let shared = shared(mesh, bodies);
-        let held = held(mesh, bodies, &shared);
-        for (number, body) in bodies.iter().enumerate() {
-            let Some(given) = self.case.body.get(&body.spec.name) else {
-                continue;
-            };
-            let path = format!("body.{}", body.spec.name);
-            let mut found: BTreeMap<usize, Vec<FreeNode>> = BTreeMap::new();
-            if is_thin(body) && body.rigid.is_none() {
-                for (node, axes) in hinges((mesh, body), &shared, &held) {
-                    if is_joined(mesh, node, &axes, joined) {
-                        continue;
-                    }
-                    for &solid in &shared[&node] {
-                        if !self.are_glued(bodies, [number, solid]) {
-                            found.entry(solid).or_default().push((node, axes.clone()));
-                        }
-                    }
+/// Refuses hinges between a beam or a shell and a solid that its body does not ask for, and bodies that ask for none.
+pub(super) fn check(
+    context: &Context,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    joined: &Joined,
+    problems: &mut Problems,
+) {
+    let shared = shared(mesh, bodies);
+    let held = held(mesh, bodies, &shared);
+    for (number, body) in bodies.iter().enumerate() {
+        let Some(given) = context.case.body.get(&body.spec.name) else {
+            continue;
+        };
+        let path = format!("body.{}", body.spec.name);
+        let mut found: BTreeMap<usize, Vec<FreeNode>> = BTreeMap::new();
+        if is_thin(body) && body.rigid.is_none() {
+            for (node, axes) in hinges((mesh, body), &shared, &held) {
+                if is_joined(mesh, node, &axes, joined) {
+                    continue;
                 }
-            }
-            let name = |solid: usize| bodies[solid].spec.name.as_str();
-            for (&solid, nodes) in &found {
-                if !given.hinged_to.iter().any(|asked| asked == name(solid)) {
-                    let problem = refusal((&path, mesh), nodes, name(solid));
-                    self.problems.push(problem);
-                }
-            }
-            for (k, asked) in given.hinged_to.iter().enumerate() {
-                if !found.keys().any(|&solid| name(solid) == asked) {
-                    let message = "this body has no hinge on that one: they share no node, or the rotation there is held";
-                    let problem = Problem::new(format!("{path}.hinged-to[{k}]"), message);
-                    let others = found.keys().map(|&solid| name(solid));
-                    self.problems.push(match found.is_empty() {
-                        true => problem.found(asked).accepted(["no `hinged-to`"]),
-                        false => problem.unknown(asked, others),
-                    });
+                for &solid in &shared[&node] {
+                    if !are_glued(context, bodies, [number, solid]) {
+                        found.entry(solid).or_default().push((node, axes.clone()));
+                    }
                 }
             }
         }
+        let name = |solid: usize| bodies[solid].spec.name.as_str();
+        for (&solid, nodes) in &found {
+            if !given.hinged_to.iter().any(|asked| asked == name(solid)) {
+                let problem = refusal((&path, mesh), nodes, name(solid));
+                problems.push(problem);
+            }
+        }
+        for (k, asked) in given.hinged_to.iter().enumerate() {
+            if !found.keys().any(|&solid| name(solid) == asked) {
+                let message = "this body has no hinge on that one: they share no node, or the rotation there is held";
+                let problem = Problem::new(format!("{path}.hinged-to[{k}]"), message);
+                let others = found.keys().map(|&solid| name(solid));
+                problems.push(match found.is_empty() {
+                    true => problem.found(asked).accepted(["no `hinged-to`"]),
+                    false => problem.unknown(asked, others),
+                });
+            }
+        }
     }
+}
 
-    /// Whether an overlap glues two bodies.
-    fn are_glued(&self, bodies: &[ModelBody], pair: [usize; 2]) -> bool {
-        let names = pair.map(|body| &bodies[body].spec.name);
-        let mut glued = self.case.arlequin.iter();
-        glued.any(|(_, given)| {
-            let mut names = names.iter();
-            names.all(|name| **name == given.inner || **name == given.outer)
-        })
-    }
+/// Whether an overlap glues two bodies.
+fn are_glued(context: &Context, bodies: &[ModelBody], pair: [usize; 2]) -> bool {
+    let names = pair.map(|body| &bodies[body].spec.name);
+    let mut glued = context.case.arlequin.iter();
+    glued.any(|(_, given)| {
+        let mut names = names.iter();
+        names.all(|name| **name == given.inner || **name == given.outer)
+    })
 }
 
 fn refusal((path, mesh): (&str, &Mesh), nodes: &[(u32, Vec<[f64; 3]>)], solid: &str) -> Problem {

@@ -3,61 +3,54 @@
 use carom_bodies::height;
 use carom_contact::Law;
 use carom_contact::law::{Capture, CurveError, Defaults, GivenLaw, Side};
-use carom_dynamics::{ModelBody, ModelTarget};
+use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
 use carom_mesh::{Mesh, Surface};
 
-use super::Builder;
+use super::context::Context;
+use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::Scheme;
 
 /// Part of the energy of an impact from which on the loss in a compliance is worth a warning.
 const LOSS: f64 = 0.01;
 
-impl Builder<'_> {
-    /// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first; `scheme`: that of
-    /// its zone.
-    pub(super) fn law(
-        &mut self,
-        name: &str,
-        given: &GivenLaw,
-        (sides, scheme): (&[Side], &Scheme),
-    ) -> Option<Law> {
-        let defaults = Defaults {
-            capture: default_capture(scheme),
-            softer: sides[0],
-        };
-        let law = match given.law(&defaults) {
-            Ok(law) => law,
-            Err(error) => {
-                self.problems
-                    .push(no_curve(&format!("contact.{name}.law.stop"), &error));
-                return None;
-            }
-        };
-        match &law {
-            Law::Compliance(law) => self.warn_of_loss(name, law.damping, sides),
-            Law::Damped(law) => {
-                let rate = 2.0 * spring_rate(law.stiffness, &sides[0]);
-                self.springs.push((name.to_string(), rate));
-            }
-            _ => {}
+/// The law of the contact `name`; `sides`: one for each deformable surface, the softer one first; `scheme`: that of
+/// its zone.
+pub(super) fn law(
+    name: &str,
+    given: &GivenLaw,
+    (sides, scheme): (&[Side], &Scheme),
+    problems: &mut Problems,
+) -> Option<Law> {
+    let defaults = Defaults {
+        capture: default_capture(scheme),
+        softer: sides[0],
+    };
+    let law = match given.law(&defaults) {
+        Ok(law) => law,
+        Err(error) => {
+            problems.push(no_curve(&format!("contact.{name}.law.stop"), &error));
+            return None;
         }
-        Some(law)
+    };
+    if let Law::Compliance(law) = &law {
+        warn_of_loss(name, law.damping, sides, problems);
     }
+    Some(law)
+}
 
-    /// Warns where a compliance absorbs more than a part [`LOSS`] of an impact: 2 φ (1 - φ) between equal bars and twice
-    /// that on an obstacle, φ = C / (C + Z).
-    fn warn_of_loss(&mut self, name: &str, damping: f64, sides: &[Side]) {
-        let impedance = 1.0 / sides.iter().map(|side| 1.0 / side.impedance).sum::<f64>();
-        let phi = damping / (damping + impedance);
-        let loss = phi * (1.0 - phi) * if sides.len() == 1 { 4.0 } else { 2.0 };
-        if loss > LOSS {
-            let enough = if sides.len() == 1 { 400.0 } else { 200.0 } * impedance;
-            self.warnings.push(format!(
-                "contact `{name}`: the compliance absorbs {:.2} % of the energy of an impact between bars; {enough:.3e} Pa s/m absorbs 1 %",
-                100.0 * loss
-            ));
-        }
+/// Warns where a compliance absorbs more than a part [`LOSS`] of an impact: 2 φ (1 - φ) between equal bars and twice
+/// that on an obstacle, φ = C / (C + Z).
+fn warn_of_loss(name: &str, damping: f64, sides: &[Side], problems: &mut Problems) {
+    let impedance = 1.0 / sides.iter().map(|side| 1.0 / side.impedance).sum::<f64>();
+    let phi = damping / (damping + impedance);
+    let loss = phi * (1.0 - phi) * if sides.len() == 1 { 4.0 } else { 2.0 };
+    if loss > LOSS {
+        let enough = if sides.len() == 1 { 400.0 } else { 200.0 } * impedance;
+        problems.warn(format!(
+            "contact `{name}`: the compliance absorbs {:.2} % of the energy of an impact between bars; {enough:.3e} Pa s/m absorbs 1 %",
+            100.0 * loss
+        ));
     }
 }
 
@@ -141,6 +134,37 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
         side.impedance = material.density * side.wave_speed;
     }
     side
+}
+
+/// A contact with the damped law.
+pub(super) struct Spring {
+    /// Name of the contact.
+    pub(super) contact: String,
+    /// Twice the rate of its spring against the elements behind it, 1/s.
+    pub(super) rate: f64,
+}
+
+/// The springs of damped laws.
+pub(super) fn springs(
+    context: &Context,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    contacts: &[ModelContact],
+) -> Vec<Spring> {
+    let spring = |contact: &ModelContact| match &contact.law {
+        Law::Damped(law) => {
+            let sides = sides(mesh, bodies, &contact.secondary, &contact.primary);
+            Some(Spring {
+                contact: contact.name.clone(),
+                rate: 2.0 * spring_rate(law.stiffness, &sides[0]),
+            })
+        }
+        _ => None,
+    };
+    let stops = &context.case.stop;
+    let contacts = contacts.iter();
+    let contacts = contacts.filter(|contact| stops.get(&contact.name).is_none());
+    contacts.filter_map(spring).collect()
 }
 
 /// sqrt(k h/E) c/h in 1/s, for k in Pa/m: the frequency of a spring on half an element, over sqrt 2.

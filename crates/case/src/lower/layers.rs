@@ -6,7 +6,8 @@ use carom_bodies::{Kinematics, TightenedLayer};
 use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh, Parts};
 
-use super::Builder;
+use super::context::Context;
+use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::Pretension;
 
@@ -19,86 +20,89 @@ const WANTED: [&str; 2] = [
     "a group of the faces of cells in one plane across the bolt, inside it",
 ];
 
-impl Builder<'_> {
-    /// Tells a solid which of its layers are tightened: those of a group of its cells, or beside a group of faces inside it.
-    pub(super) fn across_solid(
-        &mut self,
-        (mesh, body): (&Mesh, &mut ModelBody),
-        (name, path, given): (&str, &str, &Pretension),
-        elements: &[ElementId],
-    ) {
-        let path = format!("{path}.on");
-        if self.may_have_layers(&path, body).is_none() {
-            return;
-        }
-        let layers = match mesh.kind(elements[0]).table().dim == mesh.dim {
-            true => pieces(mesh, elements)
-                .into_iter()
-                .map(|cells| layer(mesh, body, cells))
-                .collect(),
-            false => pieces(mesh, elements)
-                .iter()
-                .map(|faces| beside(mesh, body, faces))
-                .collect::<Option<Vec<_>>>(),
-        };
-        let Some(layers) = layers else {
-            let message = "this is no section across a bolt: a static stage shortens a layer of cells between two planes";
-            let problem =
-                Problem::new(path, message).found(given.on.as_deref().unwrap_or_default());
-            self.problems.push(problem.accepted(WANTED));
-            return;
-        };
-        let count = layers.len();
-        for (k, (cells, axis)) in layers.into_iter().enumerate() {
-            let mut others = body.spec.layers.iter();
-            if let Some(other) =
-                others.find(|other| other.cells.iter().any(|cell| cells.contains(cell)))
-            {
-                let message = format!("`{}` tightens the same cells", other.name);
-                self.problems.push(Problem::new(path, message));
-                return;
-            }
-            body.spec.layers.push(TightenedLayer {
-                name: match count {
-                    1 => name.to_owned(),
-                    _ => format!("{name}-{}", k + 1),
-                },
-                cells,
-                axis,
-                force: given.force.0,
-                tightens: false,
-            });
-        }
+/// Tells a solid which of its layers are tightened: those of a group of its cells, or beside a group of faces inside it.
+pub(super) fn across_solid(
+    context: &Context,
+    (mesh, body): (&Mesh, &mut ModelBody),
+    (name, path, given): (&str, &str, &Pretension),
+    elements: &[ElementId],
+    problems: &mut Problems,
+) {
+    let path = format!("{path}.on");
+    if may_have_layers(context, &path, body, problems).is_none() {
+        return;
     }
+    let layers = match mesh.kind(elements[0]).table().dim == mesh.dim {
+        true => pieces(mesh, elements)
+            .into_iter()
+            .map(|cells| layer(mesh, body, cells))
+            .collect(),
+        false => pieces(mesh, elements)
+            .iter()
+            .map(|faces| beside(mesh, body, faces))
+            .collect::<Option<Vec<_>>>(),
+    };
+    let Some(layers) = layers else {
+        let message = "this is no section across a bolt: a static stage shortens a layer of cells between two planes";
+        let problem = Problem::new(path, message).found(given.on.as_deref().unwrap_or_default());
+        problems.push(problem.accepted(WANTED));
+        return;
+    };
+    let count = layers.len();
+    for (k, (cells, axis)) in layers.into_iter().enumerate() {
+        let mut others = body.spec.layers.iter();
+        if let Some(other) =
+            others.find(|other| other.cells.iter().any(|cell| cells.contains(cell)))
+        {
+            let message = format!("`{}` tightens the same cells", other.name);
+            problems.push(Problem::new(path, message));
+            return;
+        }
+        body.spec.layers.push(TightenedLayer {
+            name: match count {
+                1 => name.to_owned(),
+                _ => format!("{name}-{}", k + 1),
+            },
+            cells,
+            axis,
+            force: given.force.0,
+            tightens: false,
+        });
+    }
+}
 
-    /// Refuses solids whose layers cannot be tightened.
-    fn may_have_layers(&mut self, path: &str, body: &ModelBody) -> Option<()> {
-        let name = &body.spec.name;
-        let given = self.case.body.get(name)?;
-        let (message, accepted) = if body.spec.material.finite().is_some() {
-            (
-                "a solid at finite strain is not tightened",
-                "a body of its own for the shank, of an `elastic` material, on nodes of the rest",
-            )
-        } else if given.reduction.is_some() {
-            (
-                "a reduced body is not tightened",
-                "a body that is not reduced",
-            )
-        } else if body.rigid.is_some() {
-            ("a rigid body is not tightened", "a body that is not rigid")
-        } else if body.spec.weights.is_some() {
-            (
-                "a body that shares its volume with another model is not tightened",
-                "a body that is alone in its volume",
-            )
-        } else {
-            return Some(());
-        };
-        let problem = Problem::new(path, message).found(name.as_str());
-        self.problems.push(problem.accepted([accepted]));
-        None
-    }
+/// Refuses solids whose layers cannot be tightened.
+fn may_have_layers(
+    context: &Context,
+    path: &str,
+    body: &ModelBody,
+    problems: &mut Problems,
+) -> Option<()> {
+    let name = &body.spec.name;
+    let given = context.case.body.get(name)?;
+    let (message, accepted) = if body.spec.material.finite().is_some() {
+        (
+            "a solid at finite strain is not tightened",
+            "a body of its own for the shank, of an `elastic` material, on nodes of the rest",
+        )
+    } else if given.reduction.is_some() {
+        (
+            "a reduced body is not tightened",
+            "a body that is not reduced",
+        )
+    } else if body.rigid.is_some() {
+        ("a rigid body is not tightened", "a body that is not rigid")
+    } else if body.spec.weights.is_some() {
+        (
+            "a body that shares its volume with another model is not tightened",
+            "a body that is alone in its volume",
+        )
+    } else {
+        return Some(());
+    };
+    let problem = Problem::new(path, message).found(name.as_str());
+    problems.push(problem.accepted([accepted]));
+    None
 }
 
 /// The solid that has the cells of a group, or cells with its faces; none where no solid has.

@@ -6,9 +6,11 @@ use carom_mesh::{Mesh, Placement, generate, halve_bars, read, refine};
 use carom_quantities::{Vector, units};
 use carom_ranks::memory::room_for;
 
-use super::{Builder, dimensions};
+use super::context::Context;
+use super::discrete;
+use super::problems::{Problems, dimensions};
 use crate::error::Problem;
-use crate::input::{Input, names_in};
+use crate::input::names_in;
 use crate::rules::{MOST_NODES, nodes_of};
 use crate::schema::{Count, Part, Placed};
 
@@ -16,173 +18,171 @@ use crate::schema::{Count, Part, Placed};
 /// many without a factor.
 const NODE: f64 = 100.0;
 
-impl Builder<'_> {
-    /// The mesh in metres.
-    pub(super) fn mesh(&mut self, input: &Input) -> Option<Mesh> {
-        let mesh = &self.case.mesh;
-        let mut parts: Vec<(String, String, Mesh)> = Vec::new();
-        if let Some(file) = &mesh.file {
-            let scale = units::length_of_unit(&mesh.unit.0).unwrap_or(1.0);
-            parts.push((
-                "mesh.file".to_string(),
-                file.clone(),
-                self.read("mesh.file", &input.folder, file, scale)?,
-            ));
-        }
-        for (name, part) in mesh.part.iter() {
-            let path = format!("mesh.part.{name}");
-            let part = self.placed(&path, name, part, &input.folder)?;
-            parts.push((path, name.to_string(), part));
-        }
-        for (name, part) in mesh.generate.iter() {
-            let path = format!("mesh.generate.{name}");
-            let elements = match part {
-                Part::Line(line) => std::slice::from_ref(&line.elements),
-                Part::Rectangle(rectangle) => &rectangle.elements[..],
-                Part::Box(part) => &part.elements[..],
-            };
-            self.has_room(&path, nodes_of(elements))?;
-            parts.push((path, name.to_string(), generated(name, part)));
-        }
-        if let Some(dimension) = mesh.dimension {
-            for (_, _, part) in &mut parts {
-                self.raise(part, dimension as usize);
-            }
-        }
-        let mut parts = parts.into_iter();
-        let Some((_, first_name, mut whole)) = parts.next() else {
-            if let Some(mesh) = self.empty_mesh() {
-                return Some(mesh);
-            }
-            let problem = Problem::new("mesh", "no mesh");
-            self.problems
-                .push(problem.accepted(["`file`", "`part`", "`generate`"]));
-            return None;
+/// The mesh in metres.
+pub(super) fn lower(context: &Context, problems: &mut Problems) -> Option<Mesh> {
+    let mesh = &context.case.mesh;
+    let mut parts: Vec<(String, String, Mesh)> = Vec::new();
+    if let Some(file) = &mesh.file {
+        let scale = units::length_of_unit(&mesh.unit.0).unwrap_or(1.0);
+        parts.push((
+            "mesh.file".to_string(),
+            file.clone(),
+            read("mesh.file", context.folder, file, scale, problems)?,
+        ));
+    }
+    for (name, part) in mesh.part.iter() {
+        let path = format!("mesh.part.{name}");
+        let part = placed(&path, name, part, context.folder, problems)?;
+        parts.push((path, name.to_string(), part));
+    }
+    for (name, part) in mesh.generate.iter() {
+        let path = format!("mesh.generate.{name}");
+        let elements = match part {
+            Part::Line(line) => std::slice::from_ref(&line.elements),
+            Part::Rectangle(rectangle) => &rectangle.elements[..],
+            Part::Box(part) => &part.elements[..],
         };
-        for (path, name, part) in parts {
-            if part.dim != whole.dim {
-                let message = format!(
-                    "`{first_name}` has {}, this part another number",
-                    dimensions(whole.dim)
-                );
-                let problem = Problem::new(path, message).found(dimensions(part.dim));
-                self.problems
-                    .push(problem.accepted([format!("{}, as before", dimensions(whole.dim))]));
-            } else if let Err(error) = whole.merge(&name, part) {
-                self.problems.push(
-                    Problem::new(path, error.to_string())
-                        .accepted(["a name that no other group has"]),
-                );
-            }
-        }
-        if self.problems.is_empty() {
-            let bodies = self.case.body.iter();
-            halve_bars(&mut whole, bodies.map(|(_, body)| body.region.as_str()));
-            self.refined(whole)
-        } else {
-            None
+        has_room(&path, nodes_of(elements), problems)?;
+        parts.push((path, name.to_string(), generated(name, part)));
+    }
+    if let Some(dimension) = mesh.dimension {
+        for (_, _, part) in &mut parts {
+            raise(part, dimension as usize, problems);
         }
     }
-
-    /// Gives a part the dimension that the case asks for.
-    fn raise(&mut self, part: &mut Mesh, dimension: usize) {
-        if part.dim > dimension {
-            let message = format!("the mesh has {}", dimensions(part.dim));
-            let problem = Problem::new("mesh.dimension", message).found(dimension);
-            self.problems
-                .push(problem.accepted([format!("at least {}", part.dim)]));
-            return;
+    let mut parts = parts.into_iter();
+    let Some((_, first_name, mut whole)) = parts.next() else {
+        if let Some(mesh) = discrete::empty_mesh(context) {
+            return Some(mesh);
         }
-        part.dim = dimension;
+        let problem = Problem::new("mesh", "no mesh");
+        problems.push(problem.accepted(["`file`", "`part`", "`generate`"]));
+        return None;
+    };
+    for (path, name, part) in parts {
+        if part.dim != whole.dim {
+            let message = format!(
+                "`{first_name}` has {}, this part another number",
+                dimensions(whole.dim)
+            );
+            let problem = Problem::new(path, message).found(dimensions(part.dim));
+            problems.push(problem.accepted([format!("{}, as before", dimensions(whole.dim))]));
+        } else if let Err(error) = whole.merge(&name, part) {
+            problems.push(
+                Problem::new(path, error.to_string()).accepted(["a name that no other group has"]),
+            );
+        }
     }
-
-    /// The mesh with every element cut as often as the case says.
-    fn refined(&mut self, mut mesh: Mesh) -> Option<Mesh> {
-        let times = self.case.mesh.refine;
-        let nodes = mesh.nodes.len() as f64 * 2f64.powi(mesh.dim as i32 * times as i32);
-        if times > 0 && nodes > MOST_NODES {
-            let problem = Problem::new("mesh.refine", "too many elements");
-            let problem = problem.found(format!("about {nodes:.0e} nodes"));
-            self.problems
-                .push(problem.accepted([format!("at most {MOST_NODES:e} nodes")]));
-            return None;
-        }
-        if times > 0 {
-            self.has_room("mesh.refine", nodes)?;
-        }
-        for _ in 0..times {
-            match refine(&mesh) {
-                Ok(finer) => mesh = finer,
-                Err(error) => {
-                    self.problems
-                        .push(Problem::new("mesh.refine", error.to_string()));
-                    return None;
-                }
-            }
-        }
-        Some(mesh)
+    if problems.is_empty() {
+        let bodies = context.case.body.iter();
+        halve_bars(&mut whole, bodies.map(|(_, body)| body.region.as_str()));
+        refined(context, whole, problems)
+    } else {
+        None
     }
+}
 
-    /// Nothing where this machine has no memory for so many nodes, after a problem.
-    fn has_room(&mut self, path: &str, nodes: f64) -> Option<()> {
-        let room = room_for(
-            format_args!("a mesh of {nodes:.1e} nodes"),
-            (NODE * nodes) as u64,
-        );
-        if let Err(short) = room {
-            let problem = Problem::new(path, short.to_string());
-            self.problems.push(Problem {
-                lacks_memory: true,
-                ..problem.accepted(["fewer elements"])
-            });
-            return None;
-        }
-        Some(())
+/// Gives a part the dimension that the case asks for.
+fn raise(part: &mut Mesh, dimension: usize, problems: &mut Problems) {
+    if part.dim > dimension {
+        let message = format!("the mesh has {}", dimensions(part.dim));
+        let problem = Problem::new("mesh.dimension", message).found(dimension);
+        problems.push(problem.accepted([format!("at least {}", part.dim)]));
+        return;
     }
+    part.dim = dimension;
+}
 
-    /// A part from a file where it belongs.
-    fn placed(&mut self, path: &str, name: &str, part: &Placed, folder: &Path) -> Option<Mesh> {
-        let unit = units::length_of_unit(&part.unit.0).unwrap_or(1.0);
-        let scale = unit * part.scale.unwrap_or(1.0);
-        let mut mesh = self.read(&format!("{path}.file"), folder, &part.file, scale)?;
-        let mut turn = ([0.0, 0.0, 1.0], 0.0);
-        if let Some(given) = &part.turn {
-            turn.1 = given.angle.0;
-            if let Some(axis) = &given.axis {
-                let axis = axis.components();
-                let length = axis.iter().map(|a| a * a).sum::<f64>().sqrt();
-                turn.0 = axis.map(|a| a / length);
-            }
-        }
-        mesh.place(&Placement {
-            turn,
-            shift: part.shift.as_ref().map_or([0.0; 3], Vector::si),
-        });
-        mesh.prefix(name);
-        Some(mesh)
+/// The mesh with every element cut as often as the case says.
+fn refined(context: &Context, mut mesh: Mesh, problems: &mut Problems) -> Option<Mesh> {
+    let times = context.case.mesh.refine;
+    let nodes = mesh.nodes.len() as f64 * 2f64.powi(mesh.dim as i32 * times as i32);
+    if times > 0 && nodes > MOST_NODES {
+        let problem = Problem::new("mesh.refine", "too many elements");
+        let problem = problem.found(format!("about {nodes:.0e} nodes"));
+        problems.push(problem.accepted([format!("at most {MOST_NODES:e} nodes")]));
+        return None;
     }
-
-    /// `key`: where the case names the file.
-    fn read(&mut self, key: &str, folder: &Path, file: &str, scale: f64) -> Option<Mesh> {
-        let path = folder.join(file);
-        match carom_med::read(&path) {
-            Ok(mut mesh) => {
-                mesh.scale(scale);
-                Some(mesh)
-            }
+    if times > 0 {
+        has_room("mesh.refine", nodes, problems)?;
+    }
+    for _ in 0..times {
+        match refine(&mesh) {
+            Ok(finer) => mesh = finer,
             Err(error) => {
-                let problem = Problem::new(key, error.to_string());
-                let others = if path.exists() {
-                    Vec::new()
-                } else {
-                    beside(&path)
-                };
-                self.problems.push(match others.is_empty() {
-                    true => problem,
-                    false => problem.unknown(file, others.iter().map(String::as_str)),
-                });
-                None
+                problems.push(Problem::new("mesh.refine", error.to_string()));
+                return None;
             }
+        }
+    }
+    Some(mesh)
+}
+
+/// Nothing where this machine has no memory for so many nodes, after a problem.
+fn has_room(path: &str, nodes: f64, problems: &mut Problems) -> Option<()> {
+    let room = room_for(
+        format_args!("a mesh of {nodes:.1e} nodes"),
+        (NODE * nodes) as u64,
+    );
+    if let Err(short) = room {
+        let problem = Problem::new(path, short.to_string());
+        problems.push(Problem {
+            lacks_memory: true,
+            ..problem.accepted(["fewer elements"])
+        });
+        return None;
+    }
+    Some(())
+}
+
+/// A part from a file where it belongs.
+fn placed(
+    path: &str,
+    name: &str,
+    part: &Placed,
+    folder: &Path,
+    problems: &mut Problems,
+) -> Option<Mesh> {
+    let unit = units::length_of_unit(&part.unit.0).unwrap_or(1.0);
+    let scale = unit * part.scale.unwrap_or(1.0);
+    let mut mesh = read(&format!("{path}.file"), folder, &part.file, scale, problems)?;
+    let mut turn = ([0.0, 0.0, 1.0], 0.0);
+    if let Some(given) = &part.turn {
+        turn.1 = given.angle.0;
+        if let Some(axis) = &given.axis {
+            let axis = axis.components();
+            let length = axis.iter().map(|a| a * a).sum::<f64>().sqrt();
+            turn.0 = axis.map(|a| a / length);
+        }
+    }
+    mesh.place(&Placement {
+        turn,
+        shift: part.shift.as_ref().map_or([0.0; 3], Vector::si),
+    });
+    mesh.prefix(name);
+    Some(mesh)
+}
+
+/// `key`: where the case names the file.
+fn read(key: &str, folder: &Path, file: &str, scale: f64, problems: &mut Problems) -> Option<Mesh> {
+    let path = folder.join(file);
+    match carom_med::read(&path) {
+        Ok(mut mesh) => {
+            mesh.scale(scale);
+            Some(mesh)
+        }
+        Err(error) => {
+            let problem = Problem::new(key, error.to_string());
+            let others = if path.exists() {
+                Vec::new()
+            } else {
+                beside(&path)
+            };
+            problems.push(match others.is_empty() {
+                true => problem,
+                false => problem.unknown(file, others.iter().map(String::as_str)),
+            });
+            None
         }
     }
 }

@@ -7,8 +7,8 @@ use carom_bodies::{DiscreteKind, Tightened};
 use carom_dynamics::System;
 use carom_output::plot::quantity;
 
-use super::Builder;
-
+use super::context::Context;
+use super::problems::Problems;
 /// Steps to a period below which a run does not follow a vibration: two are the bound of what samples can tell, and a scheme shortens or lengthens the
 /// periods of a few steps by tens of per cent.
 const FOLLOWED: f64 = 4.0;
@@ -23,41 +23,39 @@ struct Oscillator<'a> {
     stiffness: f64,
 }
 
-impl Builder<'_> {
-    /// Warns of the stiffest mass on springs that the steps do not follow. Its period is that beside ends that stand: the true one is shorter.
-    /// Links and zones have masses and steps of their own.
-    pub(super) fn warn_of_oscillators(&mut self, system: &System) {
-        let case = self.case;
-        let linked = !case.rigid_link.is_empty() || !case.constraint.is_empty();
-        if linked || !self.plan.zones.is_empty() || case.time.is_static() {
-            return;
-        }
-        let alone = oscillators(system);
-        let squared = |one: &Oscillator| one.stiffness / one.mass;
-        let stiffest = alone.max_by(|a, b| squared(a).total_cmp(&squared(b)));
-        let Some(one) = stiffest.filter(|one| one.stiffness > 0.0) else {
-            return;
-        };
-        let (period, dt) = (2.0 * PI / squared(&one).sqrt(), system.dt);
-        if dt * FOLLOWED > period {
-            let [told, step, needed] = [period, dt, period / 20.0].map(|time| quantity(time, "s"));
-            self.warnings.push(format!(
-                "mass.{}: on its springs it vibrates with a period of {told}, and a step is {step}: the run does not follow it; take a step of at most {needed}",
-                one.name
-            ));
-        }
+/// Warns of the stiffest mass on springs that the steps do not follow. Its period is that beside ends that stand: the true one is shorter.
+/// Links and zones have masses and steps of their own.
+pub(super) fn warn_of_oscillators(context: &Context, system: &System, problems: &mut Problems) {
+    let case = context.case;
+    let linked = !case.rigid_link.is_empty() || !case.constraint.is_empty();
+    if linked || !context.plan.zones.is_empty() || case.time.is_static() {
+        return;
     }
+    let alone = oscillators(system);
+    let squared = |one: &Oscillator| one.stiffness / one.mass;
+    let stiffest = alone.max_by(|a, b| squared(a).total_cmp(&squared(b)));
+    let Some(one) = stiffest.filter(|one| one.stiffness > 0.0) else {
+        return;
+    };
+    let (period, dt) = (2.0 * PI / squared(&one).sqrt(), system.dt);
+    if dt * FOLLOWED > period {
+        let [told, step, needed] = [period, dt, period / 20.0].map(|time| quantity(time, "s"));
+        problems.warn(format!(
+            "mass.{}: on its springs it vibrates with a period of {told}, and a step is {step}: the run does not follow it; take a step of at most {needed}",
+            one.name
+        ));
+    }
+}
 
-    /// Warns of moments of inertia that no body has: each is at most the sum of the other two.
-    pub(super) fn warn_of_moments(&mut self, path: &str, moments: [f64; 3]) {
-        let sum: f64 = moments.iter().sum();
-        let most = moments.iter().copied().fold(0.0, f64::max);
-        // what people round
-        if most > 0.5 * sum * (1.0 + 1e-3) {
-            self.warnings.push(format!(
-                "{path}: no body has moments of inertia of {moments:?} kg m²: each is at most the sum of the other two"
-            ));
-        }
+/// Warns of moments of inertia that no body has: each is at most the sum of the other two.
+pub(super) fn warn_of_moments(path: &str, moments: [f64; 3], problems: &mut Problems) {
+    let sum: f64 = moments.iter().sum();
+    let most = moments.iter().copied().fold(0.0, f64::max);
+    // what people round
+    if most > 0.5 * sum * (1.0 + 1e-3) {
+        problems.warn(format!(
+            "{path}: no body has moments of inertia of {moments:?} kg m²: each is at most the sum of the other two"
+        ));
     }
 }
 

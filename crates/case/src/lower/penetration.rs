@@ -4,136 +4,157 @@ use carom_contact::Contact;
 use carom_contact::law::Level;
 use carom_dynamics::System;
 
-use super::Builder;
+use super::bodies;
+use super::context::Context;
+use super::problems::{Problems, plural};
 use crate::error::Problem;
 use crate::schema;
 
-impl Builder<'_> {
-    /// Refuses contacts that penetrate at the start, in the initial displacement, or tells of them where the case lets them.
-    pub(super) fn penetration(&mut self, system: &System) {
-        let slack = system.tolerance.max(1e-9 * system.mesh.size());
-        let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
-        for (k, contact) in system.contacts.iter().enumerate() {
-            let name = &contact.name;
-            let way = self.case.contact.get(name).map(|contact| contact.initial);
-            let inside = system.self_penetrations(k);
-            if let (Some(&node), Some(schema::Penetration::Refuse)) = (inside.first(), way) {
-                let count = super::plural(inside.len(), "node");
-                let message = format!("{count} of the surface inside its own body at the start");
-                let x = system.mesh.nodes[node as usize];
-                let problem = Problem::new(format!("contact.{name}"), message)
-                    .found(format!(
-                        "node {node}, ({:.6}, {:.6}, {:.6}) m",
-                        x[0], x[1], x[2]
-                    ))
-                    .accepted(["a mesh that does not overlap itself"]);
-                self.problems.push(problem);
-                continue;
-            }
-            if way == Some(schema::Penetration::Offset) {
-                let offsets = contact.offsets.iter().enumerate();
-                let deepest = offsets.min_by(|a, b| b.1.total_cmp(a.1));
-                if let Some((point, depth)) = deepest {
-                    let count = contact.offsets.iter().filter(|depth| **depth > 0.0).count();
-                    let node = system.mesh_node[contact.points[point].node() as usize];
-                    self.tell(name, count, (node, *depth), "offset");
-                }
-                continue;
-            }
-            let deep = contact.penetrations(&places, slack);
-            let Some(deepest) = deep.iter().min_by(|a, b| b.depth.total_cmp(&a.depth)) else {
-                continue;
-            };
-            let node = system.mesh_node[deepest.node as usize];
-            if let Some(stop) = self.case.stop.get(name) {
-                let gap = stop.gap.map_or(0.0, |gap| gap.0);
-                self.compressed(contact, (gap, deepest.depth, slack));
-                continue;
-            }
-            if way == Some(schema::Penetration::Keep) {
-                self.tell(name, deep.len(), (node, deepest.depth), "kept");
-                continue;
-            }
-            let x = contact.points[deepest.point].place(&places);
-            let verb = match deep.len() {
-                1 => "penetrates",
-                _ => "penetrate",
-            };
-            let message = format!("{} {verb} at the start", super::plural(deep.len(), "point"));
+/// Refuses contacts that penetrate at the start, in the initial displacement, or tells of them where the case lets them.
+pub(super) fn penetration(context: &Context, system: &System, problems: &mut Problems) {
+    let slack = system.tolerance.max(1e-9 * system.mesh.size());
+    let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
+    for (k, contact) in system.contacts.iter().enumerate() {
+        let name = &contact.name;
+        let way = context
+            .case
+            .contact
+            .get(name)
+            .map(|contact| contact.initial);
+        let inside = system.self_penetrations(k);
+        if let (Some(&node), Some(schema::Penetration::Refuse)) = (inside.first(), way) {
+            let count = plural(inside.len(), "node");
+            let message = format!("{count} of the surface inside its own body at the start");
+            let x = system.mesh.nodes[node as usize];
             let problem = Problem::new(format!("contact.{name}"), message)
                 .found(format!(
-                    "a gap of {:.4e} m at node {node}, ({:.6}, {:.6}, {:.6}) m",
-                    -deepest.depth, x[0], x[1], x[2]
+                    "node {node}, ({:.6}, {:.6}, {:.6}) m",
+                    x[0], x[1], x[2]
                 ))
-                .accepted([
-                    format!("gaps of at least -{slack:.1e} m"),
-                    "initial = \"offset\" (the overlap stays and carries no force, as for facets of round surfaces)".to_string(),
-                    "initial = \"remove\" (nodes are moved)".to_string(),
-                    "initial = \"keep\" (the law pushes them out)".to_string(),
-                ]);
-            self.problems.push(problem);
+                .accepted(["a mesh that does not overlap itself"]);
+            problems.push(problem);
+            continue;
         }
-    }
-
-    /// Tells of a stop that penetrates at the start by a depth (m) as its gap (m) asks, and refuses one that does not, or that has a law without
-    /// a force for that.
-    fn compressed(&mut self, stop: &Contact, (gap, depth, slack): (f64, f64, f64)) {
-        let name = &stop.name;
-        let has_force = stop.law.get().level() == Level::GapAndRate;
-        if has_force && depth <= slack - gap {
-            self.warnings.push(format!(
-                "stop `{name}`: its gap is negative, so that it is compressed by {depth:.4e} m at the start"
-            ));
-            return;
+        if way == Some(schema::Penetration::Offset) {
+            let offsets = contact.offsets.iter().enumerate();
+            let deepest = offsets.min_by(|a, b| b.1.total_cmp(a.1));
+            if let Some((point, depth)) = deepest {
+                let count = contact.offsets.iter().filter(|depth| **depth > 0.0).count();
+                let node = system.mesh_node[contact.points[point].node() as usize];
+                tell(name, count, (node, *depth), "offset", problems);
+            }
+            continue;
         }
-        let message = match has_force {
-            true => "the end of the stop is inside the obstacle at the start",
-            false => "a stop that is compressed at the start needs a law that gives it a force",
+        let deep = contact.penetrations(&places, slack);
+        let Some(deepest) = deep.iter().min_by(|a, b| b.depth.total_cmp(&a.depth)) else {
+            continue;
         };
-        let problem = Problem::new(format!("stop.{name}.gap"), message);
-        let problem = problem.found(format!("a penetration of {depth:.4e} m"));
-        self.problems.push(match has_force {
-            true => problem.accepted([
-                "a place outside of the obstacle".to_owned(),
-                format!("gap = {:.6} m (compressed at the start)", gap - depth),
-            ]),
-            false => problem.accepted([
-                format!("gap of at least -{slack:.1e} m"),
-                "the spring of the stop, without `law`".to_owned(),
-            ]),
-        });
-    }
-
-    /// Tells which nodes contacts have moved away from the places `before`, and refuses cells that this has spoilt.
-    pub(super) fn moved(&mut self, system: &System, before: &[[f64; 3]]) {
-        let places = system.mesh.nodes.iter().zip(before);
-        let distance = |(now, then): (&[f64; 3], &[f64; 3])| {
-            let squares = now.iter().zip(then).map(|(a, b)| (a - b).powi(2));
-            squares.sum::<f64>().sqrt()
-        };
-        let ways: Vec<f64> = places.map(distance).collect();
-        let furthest = ways.iter().enumerate().min_by(|a, b| b.1.total_cmp(a.1));
-        let Some((node, way)) = furthest.filter(|(_, way)| **way > 0.0) else {
-            return;
-        };
-        let count = ways.iter().filter(|way| **way > 0.0).count();
-        let remove = schema::Penetration::Remove;
-        let contacts = self.case.contact.iter();
-        let names: Vec<&str> = contacts
-            .filter(|(_, contact)| contact.initial == remove)
-            .map(|(name, _)| name)
-            .collect();
-        self.tell(&names.join("`, `"), count, (node as u32, *way), "removed");
-        for body in system.bodies.iter().filter(|b| b.as_solid().is_some()) {
-            let path = format!("body.{}", body.name());
-            self.sound(&system.mesh, &path, body.cells());
+        let node = system.mesh_node[deepest.node as usize];
+        if let Some(stop) = context.case.stop.get(name) {
+            let gap = stop.gap.map_or(0.0, |gap| gap.0);
+            compressed(contact, (gap, deepest.depth, slack), problems);
+            continue;
         }
+        if way == Some(schema::Penetration::Keep) {
+            tell(name, deep.len(), (node, deepest.depth), "kept", problems);
+            continue;
+        }
+        let x = contact.points[deepest.point].place(&places);
+        let verb = match deep.len() {
+            1 => "penetrates",
+            _ => "penetrate",
+        };
+        let message = format!("{} {verb} at the start", plural(deep.len(), "point"));
+        let problem = Problem::new(format!("contact.{name}"), message)
+            .found(format!(
+                "a gap of {:.4e} m at node {node}, ({:.6}, {:.6}, {:.6}) m",
+                -deepest.depth, x[0], x[1], x[2]
+            ))
+            .accepted([
+                format!("gaps of at least -{slack:.1e} m"),
+                "initial = \"offset\" (the overlap stays and carries no force, as for facets of round surfaces)".to_string(),
+                "initial = \"remove\" (nodes are moved)".to_string(),
+                "initial = \"keep\" (the law pushes them out)".to_string(),
+            ]);
+        problems.push(problem);
     }
+}
 
-    fn tell(&mut self, contact: &str, count: usize, (node, depth): (u32, f64), done: &str) {
-        self.warnings.push(format!(
-            "contact `{contact}`: {} penetrated at the start, the deepest, at node {node}, by {depth:.4e} m; {done}, as asked",
-            super::plural(count, "point")
+/// Tells of a stop that penetrates at the start by a depth (m) as its gap (m) asks, and refuses one that does not, or that has a law without
+/// a force for that.
+fn compressed(stop: &Contact, (gap, depth, slack): (f64, f64, f64), problems: &mut Problems) {
+    let name = &stop.name;
+    let has_force = stop.law.get().level() == Level::GapAndRate;
+    if has_force && depth <= slack - gap {
+        problems.warn(format!(
+            "stop `{name}`: its gap is negative, so that it is compressed by {depth:.4e} m at the start"
         ));
+        return;
     }
+    let message = match has_force {
+        true => "the end of the stop is inside the obstacle at the start",
+        false => "a stop that is compressed at the start needs a law that gives it a force",
+    };
+    let problem = Problem::new(format!("stop.{name}.gap"), message);
+    let problem = problem.found(format!("a penetration of {depth:.4e} m"));
+    problems.push(match has_force {
+        true => problem.accepted([
+            "a place outside of the obstacle".to_owned(),
+            format!("gap = {:.6} m (compressed at the start)", gap - depth),
+        ]),
+        false => problem.accepted([
+            format!("gap of at least -{slack:.1e} m"),
+            "the spring of the stop, without `law`".to_owned(),
+        ]),
+    });
+}
+
+/// Tells which nodes contacts have moved away from the places `before`, and refuses cells that this has spoilt.
+pub(super) fn moved(
+    context: &Context,
+    system: &System,
+    before: &[[f64; 3]],
+    problems: &mut Problems,
+) {
+    let places = system.mesh.nodes.iter().zip(before);
+    let distance = |(now, then): (&[f64; 3], &[f64; 3])| {
+        let squares = now.iter().zip(then).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
+    let ways: Vec<f64> = places.map(distance).collect();
+    let furthest = ways.iter().enumerate().min_by(|a, b| b.1.total_cmp(a.1));
+    let Some((node, way)) = furthest.filter(|(_, way)| **way > 0.0) else {
+        return;
+    };
+    let count = ways.iter().filter(|way| **way > 0.0).count();
+    let remove = schema::Penetration::Remove;
+    let contacts = context.case.contact.iter();
+    let names: Vec<&str> = contacts
+        .filter(|(_, contact)| contact.initial == remove)
+        .map(|(name, _)| name)
+        .collect();
+    tell(
+        &names.join("`, `"),
+        count,
+        (node as u32, *way),
+        "removed",
+        problems,
+    );
+    for body in system.bodies.iter().filter(|b| b.as_solid().is_some()) {
+        let path = format!("body.{}", body.name());
+        bodies::sound(&system.mesh, &path, body.cells(), problems);
+    }
+}
+
+fn tell(
+    contact: &str,
+    count: usize,
+    (node, depth): (u32, f64),
+    done: &str,
+    problems: &mut Problems,
+) {
+    problems.warn(format!(
+        "contact `{contact}`: {} penetrated at the start, the deepest, at node {node}, by {depth:.4e} m; {done}, as asked",
+        plural(count, "point")
+    ));
 }

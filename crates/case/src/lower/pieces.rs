@@ -7,8 +7,9 @@ use carom_dynamics::{
 };
 use carom_mesh::{Mesh, Parts};
 
-use super::Builder;
-use super::arlequin::is_thin;
+use super::context::Context;
+use super::joints::is_thin;
+use super::problems::Problems;
 
 /// What joins pieces of bodies beside common nodes.
 pub(super) struct Joining<'a> {
@@ -44,81 +45,87 @@ impl Joining<'_> {
     }
 }
 
-impl Builder<'_> {
-    /// Warns of bodies in pieces that nothing joins, neither another body nor a contact, a tie or a spring, and names the closest nodes of
-    /// two of them.
-    pub(super) fn pieces(&mut self, mesh: &Mesh, bodies: &[ModelBody], joining: &Joining) {
-        let parts = joining.parts(mesh, bodies);
-        for body in bodies {
-            let pieces = pieces_of(mesh, body, &parts);
-            let Some(largest) = pieces.iter().rev().max_by_key(|piece| piece.len()) else {
-                continue;
-            };
-            let others = pieces.iter().filter(|piece| piece[0] != largest[0]);
-            let others: Vec<u32> = others.flatten().copied().collect();
-            let Some(([one, other], distance)) = mesh.closest_nodes(largest, &others) else {
-                continue;
-            };
-            let x = mesh.nodes[one as usize];
-            let merge = match distance <= 1e-6 * mesh.size() {
-                true => "they are the same place: merge the nodes of the mesh",
-                false => "merge the nodes of the mesh, or make each piece a body of its own",
-            };
-            self.doubt(format!(
-                "body `{}` is in {} pieces that share no node and separate without resistance; the closest nodes of two of them, {one} at ({:.6}, {:.6}, {:.6}) m and {other}, are {distance:.4e} m apart; {merge}",
-                body.spec.name,
-                pieces.len(),
-                x[0],
-                x[1],
-                x[2]
-            ));
-        }
+/// Warns of bodies in pieces that nothing joins, neither another body nor a contact, a tie or a spring, and names the closest nodes of
+/// two of them.
+pub(super) fn pieces(
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    joining: &Joining,
+    problems: &mut Problems,
+) {
+    let parts = joining.parts(mesh, bodies);
+    for body in bodies {
+        let pieces = pieces_of(mesh, body, &parts);
+        let Some(largest) = pieces.iter().rev().max_by_key(|piece| piece.len()) else {
+            continue;
+        };
+        let others = pieces.iter().filter(|piece| piece[0] != largest[0]);
+        let others: Vec<u32> = others.flatten().copied().collect();
+        let Some(([one, other], distance)) = mesh.closest_nodes(largest, &others) else {
+            continue;
+        };
+        let x = mesh.nodes[one as usize];
+        let merge = match distance <= 1e-6 * mesh.size() {
+            true => "they are the same place: merge the nodes of the mesh",
+            false => "merge the nodes of the mesh, or make each piece a body of its own",
+        };
+        problems.doubt(format!(
+            "body `{}` is in {} pieces that share no node and separate without resistance; the closest nodes of two of them, {one} at ({:.6}, {:.6}, {:.6}) m and {other}, are {distance:.4e} m apart; {merge}",
+            body.spec.name,
+            pieces.len(),
+            x[0],
+            x[1],
+            x[2]
+        ));
     }
 }
 
-impl Builder<'_> {
-    /// Warns of beams and shells that lie in a solid to which nothing joins them: no overlap, no transition, no common node.
-    pub(super) fn unglued(&mut self, mesh: &Mesh, bodies: &[ModelBody]) {
-        let nodes = |body: &ModelBody| {
-            let cells = body.spec.cells.iter();
-            let nodes = cells.flat_map(|&cell| mesh.element_nodes(cell)).copied();
-            nodes.collect::<BTreeSet<u32>>()
-        };
-        let ends = self.case.transition.iter();
-        let ends = ends.filter_map(|(_, given)| mesh.groups.get(given.end.as_ref()?));
-        let ends: Vec<u32> = ends.flat_map(|group| mesh.group_nodes(group)).collect();
-        for thin in bodies.iter().filter(|body| is_thin(body)) {
-            let own = nodes(thin);
-            if ends.iter().any(|end| own.contains(end)) {
+/// Warns of beams and shells that lie in a solid to which nothing joins them: no overlap, no transition, no common node.
+pub(super) fn unglued(
+    context: &Context,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    problems: &mut Problems,
+) {
+    let nodes = |body: &ModelBody| {
+        let cells = body.spec.cells.iter();
+        let nodes = cells.flat_map(|&cell| mesh.element_nodes(cell)).copied();
+        nodes.collect::<BTreeSet<u32>>()
+    };
+    let ends = context.case.transition.iter();
+    let ends = ends.filter_map(|(_, given)| mesh.groups.get(given.end.as_ref()?));
+    let ends: Vec<u32> = ends.flat_map(|group| mesh.group_nodes(group)).collect();
+    for thin in bodies.iter().filter(|body| is_thin(body)) {
+        let own = nodes(thin);
+        if ends.iter().any(|end| own.contains(end)) {
+            continue;
+        }
+        for solid in bodies.iter().filter(|body| fills(mesh, body)) {
+            let names = [&thin.spec.name, &solid.spec.name];
+            let mut glued = context.case.arlequin.iter();
+            let glued = glued.any(|(_, given)| {
+                names
+                    .iter()
+                    .all(|name| **name == given.inner || **name == given.outer)
+            });
+            if glued || !own.is_disjoint(&nodes(solid)) {
                 continue;
             }
-            for solid in bodies.iter().filter(|body| fills(mesh, body)) {
-                let names = [&thin.spec.name, &solid.spec.name];
-                let mut glued = self.case.arlequin.iter();
-                let glued = glued.any(|(_, given)| {
-                    names
-                        .iter()
-                        .all(|name| **name == given.inner || **name == given.outer)
-                });
-                if glued || !own.is_disjoint(&nodes(solid)) {
-                    continue;
-                }
-                let all: Vec<u32> = own.iter().copied().collect();
-                let within = mesh.nodes_within(&all, &solid.spec.cells);
-                let Some((first, _)) = within.first().filter(|_| within.len() > 1) else {
-                    continue;
-                };
-                let x = mesh.nodes[*first as usize];
-                self.doubt(format!(
-                    "{} nodes of body `{}`, the first at ({:.6}, {:.6}, {:.6}) m, lie in the solid `{}`, and nothing joins the two: [arlequin.<name>] glues them over a volume, [transition.<name>] an end to a face",
-                    within.len(),
-                    names[0],
-                    x[0],
-                    x[1],
-                    x[2],
-                    names[1],
-                ));
-            }
+            let all: Vec<u32> = own.iter().copied().collect();
+            let within = mesh.nodes_within(&all, &solid.spec.cells);
+            let Some((first, _)) = within.first().filter(|_| within.len() > 1) else {
+                continue;
+            };
+            let x = mesh.nodes[*first as usize];
+            problems.doubt(format!(
+                "{} nodes of body `{}`, the first at ({:.6}, {:.6}, {:.6}) m, lie in the solid `{}`, and nothing joins the two: [arlequin.<name>] glues them over a volume, [transition.<name>] an end to a face",
+                within.len(),
+                names[0],
+                x[0],
+                x[1],
+                x[2],
+                names[1],
+            ));
         }
     }
 }

@@ -10,227 +10,231 @@ use carom_mesh::{ElementId, Group, Mesh};
 use carom_output::Spectrum;
 use carom_signals::ChannelFilter;
 
-use super::{Builder, BuiltProbe};
+use super::built::BuiltProbe;
+use super::context::Context;
+use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::{Mean, Motion, Probe};
 
-impl Builder<'_> {
-    pub(super) fn probes(&mut self, mesh: &Mesh, bodies: &[ModelBody]) -> Vec<BuiltProbe> {
-        let axisymmetric = bodies
-            .iter()
-            .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
-        let mut probes = Vec::new();
-        for (name, probe) in self.case.probe.iter() {
-            let spectrum = self.spectrum(name, probe);
-            let has = |what| probe.record.contains(&what);
-            let (nodes, cell, section) = match (&probe.on, &probe.at) {
-                (Some(on), _) => {
-                    let path = format!("probe.{name}.on");
-                    let Some(group) = self.group(mesh, &path, on) else {
-                        continue;
-                    };
-                    (shares(mesh, group, axisymmetric), None, None)
-                }
-                (None, Some(at)) => {
-                    let path = format!("probe.{name}.at");
-                    let at = self.vector(mesh, &path, at);
-                    let node = nearest_node(mesh, bodies, &at);
-                    let thin = bodies.iter().filter(|body| is_thin(body));
-                    (
-                        node.map(|node| (node, 1.0)).into_iter().collect(),
-                        nearest_cell(mesh, bodies.iter(), &at),
-                        nearest_cell(mesh, thin, &at).map(|cell| (cell, end(mesh, cell, &at))),
-                    )
-                }
-                (None, None) => continue,
-            };
-            if has(Motion::Stress) && cell.is_none() {
-                let (of, accepted) = ("stress", "`at` in place of `on`");
-                self.problems
-                    .push(without_a_cell(name, probe, (Motion::Stress, of, accepted)));
+pub(super) fn lower(
+    context: &Context,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    problems: &mut Problems,
+) -> Vec<BuiltProbe> {
+    let axisymmetric = bodies
+        .iter()
+        .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
+    let mut probes = Vec::new();
+    for (name, probe) in context.case.probe.iter() {
+        let spectrum = spectrum(name, probe, problems);
+        let has = |what| probe.record.contains(&what);
+        let (nodes, cell, section) = match (&probe.on, &probe.at) {
+            (Some(on), _) => {
+                let path = format!("probe.{name}.on");
+                let Some(group) = problems.group(mesh, &path, on) else {
+                    continue;
+                };
+                (shares(mesh, group, axisymmetric), None, None)
             }
-            if has(Motion::SectionForces) && section.is_none() {
-                let accepted = "`at`, in a model with beams or shells";
-                let of = (Motion::SectionForces, "section-forces", accepted);
-                self.problems.push(without_a_cell(name, probe, of));
+            (None, Some(at)) => {
+                let path = format!("probe.{name}.at");
+                let at = problems.vector(mesh, &path, at);
+                let node = nearest_node(mesh, bodies, &at);
+                let thin = bodies.iter().filter(|body| is_thin(body));
+                (
+                    node.map(|node| (node, 1.0)).into_iter().collect(),
+                    nearest_cell(mesh, bodies.iter(), &at),
+                    nearest_cell(mesh, thin, &at).map(|cell| (cell, end(mesh, cell, &at))),
+                )
             }
-            probes.push(BuiltProbe {
-                name: name.to_string(),
-                nodes,
-                cell: cell.filter(|_| has(Motion::Stress)),
-                section: section.filter(|_| has(Motion::SectionForces)),
-                record: probe.record.clone(),
-                spectrum,
-                filters: probe.filter.iter().map(|class| class.frequency()).collect(),
-            });
+            (None, None) => continue,
+        };
+        if has(Motion::Stress) && cell.is_none() {
+            let (of, accepted) = ("stress", "`at` in place of `on`");
+            problems.push(without_a_cell(name, probe, (Motion::Stress, of, accepted)));
         }
-        probes
+        if has(Motion::SectionForces) && section.is_none() {
+            let accepted = "`at`, in a model with beams or shells";
+            let of = (Motion::SectionForces, "section-forces", accepted);
+            problems.push(without_a_cell(name, probe, of));
+        }
+        probes.push(BuiltProbe {
+            name: name.to_string(),
+            nodes,
+            cell: cell.filter(|_| has(Motion::Stress)),
+            section: section.filter(|_| has(Motion::SectionForces)),
+            record: probe.record.clone(),
+            spectrum,
+            filters: probe.filter.iter().map(|class| class.frequency()).collect(),
+        });
     }
+    probes
+}
 
-    /// Refuses probes of contacts where there is no contact point.
-    pub(super) fn probes_at_contacts(&mut self, probes: &[BuiltProbe], system: &System) {
-        let wanted = |probe: &&BuiltProbe| probe.record.contains(&Motion::Contact);
-        for probe in probes.iter().filter(wanted) {
-            let has = |node: u32| {
-                let mesh_node = system.mesh_node[node as usize];
-                probe.nodes.iter().any(|(own, _)| *own == mesh_node)
-            };
-            let mut points = system.contacts.iter().flat_map(|contact| &contact.points);
-            if points.any(|point| point.carriers().any(|(node, _)| has(node))) {
-                continue;
-            }
-            let place = probe.record.iter().position(|of| *of == Motion::Contact);
-            let path = format!("probe.{}.record[{}]", probe.name, place.unwrap_or(0));
-            let message = "there is no contact point at the nodes of this probe: those of a contact are on its secondary side";
-            let problem = Problem::new(path, message).found("contact");
-            let accepted = ["a probe on the secondary side of a contact"];
-            self.problems.push(problem.accepted(accepted));
+/// Refuses probes of contacts where there is no contact point.
+pub(super) fn probes_at_contacts(probes: &[BuiltProbe], system: &System, problems: &mut Problems) {
+    let wanted = |probe: &&BuiltProbe| probe.record.contains(&Motion::Contact);
+    for probe in probes.iter().filter(wanted) {
+        let has = |node: u32| {
+            let mesh_node = system.mesh_node[node as usize];
+            probe.nodes.iter().any(|(own, _)| *own == mesh_node)
+        };
+        let mut points = system.contacts.iter().flat_map(|contact| &contact.points);
+        if points.any(|point| point.carriers().any(|(node, _)| has(node))) {
+            continue;
         }
+        let place = probe.record.iter().position(|of| *of == Motion::Contact);
+        let path = format!("probe.{}.record[{}]", probe.name, place.unwrap_or(0));
+        let message = "there is no contact point at the nodes of this probe: those of a contact are on its secondary side";
+        let problem = Problem::new(path, message).found("contact");
+        let accepted = ["a probe on the secondary side of a contact"];
+        problems.push(problem.accepted(accepted));
     }
+}
 
-    /// Probes with masses as weights where they ask for them.
-    pub(super) fn weighed(
-        &mut self,
-        mut probes: Vec<BuiltProbe>,
-        system: &System,
-    ) -> Vec<BuiltProbe> {
-        let given = |probe: &BuiltProbe| self.case.probe.get(&probe.name).map(|given| given.mean);
-        if probes.iter().all(|probe| given(probe) != Some(Mean::Mass)) {
-            return probes;
-        }
-        let mut masses = vec![0.0; system.x.len()];
-        for &(node, mass) in system.body_masses.iter().flatten() {
-            masses[node as usize] += mass;
-        }
-        for probe in &mut probes {
-            let given = self.case.probe.get(&probe.name);
-            let Some(given) = given.filter(|given| given.mean == Mean::Mass) else {
-                continue;
-            };
-            let path = format!("probe.{}.mean", probe.name);
-            if given.on.is_none() {
-                let problem = Problem::new(path, "the motion of one node has no mean");
-                let accepted = ["`on` in place of `at`", "no `mean`"];
-                self.problems.push(problem.found("mass").accepted(accepted));
-                continue;
-            }
-            for (node, weight) in &mut probe.nodes {
-                let number = system.number[*node as usize];
-                *weight = masses.get(number as usize).copied().unwrap_or(0.0);
-            }
-            if probe.nodes.iter().all(|(_, weight)| *weight == 0.0) {
-                let problem = Problem::new(path, "the nodes of the probe have no mass");
-                let accepted = ["measure", "a group with mass"];
-                self.problems.push(problem.found("mass").accepted(accepted));
-            }
-        }
-        probes
+/// Probes with masses as weights where they ask for them.
+pub(super) fn weighed(
+    context: &Context,
+    mut probes: Vec<BuiltProbe>,
+    system: &System,
+    problems: &mut Problems,
+) -> Vec<BuiltProbe> {
+    let given = |probe: &BuiltProbe| context.case.probe.get(&probe.name).map(|given| given.mean);
+    if probes.iter().all(|probe| given(probe) != Some(Mean::Mass)) {
+        return probes;
     }
-
-    /// Refuses formats of fields that are not built in.
-    pub(super) fn formats(&mut self) {
-        let fields = self.case.output.fields.as_ref();
-        if cfg!(not(feature = "hdf5")) && fields.is_some_and(|fields| fields.vtkhdf) {
-            let message = "this carom writes no VTKHDF files";
-            let problem = Problem::new("output.fields.vtkhdf", message).found("true");
-            self.problems.push(problem.accepted([
-                "`false`",
-                "a carom that is built with: cargo build --release --features hdf5",
-            ]));
+    let mut masses = vec![0.0; system.x.len()];
+    for &(node, mass) in system.body_masses.iter().flatten() {
+        masses[node as usize] += mass;
+    }
+    for probe in &mut probes {
+        let given = context.case.probe.get(&probe.name);
+        let Some(given) = given.filter(|given| given.mean == Mean::Mass) else {
+            continue;
+        };
+        let path = format!("probe.{}.mean", probe.name);
+        if given.on.is_none() {
+            let problem = Problem::new(path, "the motion of one node has no mean");
+            let accepted = ["`on` in place of `at`", "no `mean`"];
+            problems.push(problem.found("mass").accepted(accepted));
+            continue;
+        }
+        for (node, weight) in &mut probe.nodes {
+            let number = system.number[*node as usize];
+            *weight = masses.get(number as usize).copied().unwrap_or(0.0);
+        }
+        if probe.nodes.iter().all(|(_, weight)| *weight == 0.0) {
+            let problem = Problem::new(path, "the nodes of the probe have no mass");
+            let accepted = ["measure", "a group with mass"];
+            problems.push(problem.found("mass").accepted(accepted));
         }
     }
+    probes
+}
 
-    fn spectrum(&mut self, name: &str, probe: &Probe) -> Option<Spectrum> {
-        let given = probe.response_spectrum?;
-        let [from, to] = [given.from.0, given.to.0];
-        if to <= from {
-            let path = format!("probe.{name}.response-spectrum.to");
-            let message = "the highest frequency is not above the lowest one";
-            let problem = Problem::new(path, message).found(format!("{to} Hz"));
-            self.problems
-                .push(problem.accepted([format!("more than {from} Hz")]));
-            return None;
-        }
-        Some(Spectrum::between(
-            [from, to],
-            given.points as usize,
-            given.damping,
-        ))
+/// Refuses formats of fields that are not built in.
+pub(super) fn formats(context: &Context, problems: &mut Problems) {
+    let fields = context.case.output.fields.as_ref();
+    if cfg!(not(feature = "hdf5")) && fields.is_some_and(|fields| fields.vtkhdf) {
+        let message = "this carom writes no VTKHDF files";
+        let problem = Problem::new("output.fields.vtkhdf", message).found("true");
+        problems.push(problem.accepted([
+            "`false`",
+            "a carom that is built with: cargo build --release --features hdf5",
+        ]));
     }
+}
 
-    /// Refuses filters for which the steps, of `dt` (s), are too long.
-    pub(super) fn fine_enough(&mut self, dt: f64) {
-        let probes = self.case.probe.iter();
-        let probes = probes.map(|(name, probe)| (format!("probe.{name}"), &probe.filter));
-        let contacts = self.case.contact.iter();
-        let contacts = contacts.map(|(name, contact)| (format!("contact.{name}"), &contact.filter));
-        for (owner, filters) in probes.chain(contacts) {
-            for (place, class) in filters.iter().enumerate() {
-                let longest = ChannelFilter::longest_step(f64::from(class.frequency()));
-                if dt > longest * (1.0 + 1e-9) {
-                    let path = format!("{owner}.filter[{place}]");
-                    let message = format!(
-                        "the filter needs ten steps in the period of its class, and a step is {dt:.4e} s"
-                    );
-                    let problem = Problem::new(path, message).found(class.name());
-                    self.problems.push(problem.accepted([
-                        format!("steps of at most {longest:.4e} s"),
-                        "a lower class".to_owned(),
-                    ]));
-                }
+fn spectrum(name: &str, probe: &Probe, problems: &mut Problems) -> Option<Spectrum> {
+    let given = probe.response_spectrum?;
+    let [from, to] = [given.from.0, given.to.0];
+    if to <= from {
+        let path = format!("probe.{name}.response-spectrum.to");
+        let message = "the highest frequency is not above the lowest one";
+        let problem = Problem::new(path, message).found(format!("{to} Hz"));
+        problems.push(problem.accepted([format!("more than {from} Hz")]));
+        return None;
+    }
+    Some(Spectrum::between(
+        [from, to],
+        given.points as usize,
+        given.damping,
+    ))
+}
+
+/// Refuses filters for which the steps, of `dt` (s), are too long.
+pub(super) fn fine_enough(context: &Context, dt: f64, problems: &mut Problems) {
+    let probes = context.case.probe.iter();
+    let probes = probes.map(|(name, probe)| (format!("probe.{name}"), &probe.filter));
+    let contacts = context.case.contact.iter();
+    let contacts = contacts.map(|(name, contact)| (format!("contact.{name}"), &contact.filter));
+    for (owner, filters) in probes.chain(contacts) {
+        for (place, class) in filters.iter().enumerate() {
+            let longest = ChannelFilter::longest_step(f64::from(class.frequency()));
+            if dt > longest * (1.0 + 1e-9) {
+                let path = format!("{owner}.filter[{place}]");
+                let message = format!(
+                    "the filter needs ten steps in the period of its class, and a step is {dt:.4e} s"
+                );
+                let problem = Problem::new(path, message).found(class.name());
+                problems.push(problem.accepted([
+                    format!("steps of at most {longest:.4e} s"),
+                    "a lower class".to_owned(),
+                ]));
             }
         }
     }
+}
 
-    /// Refuses probes on nodes of no body. `of`: cells of each body; with overlaps without those that are removed.
-    pub(super) fn within_bodies(
-        &mut self,
-        mesh: &Mesh,
-        probes: &[BuiltProbe],
-        of: &[Vec<ElementId>],
-    ) {
-        let mut used = vec![false; mesh.nodes.len()];
-        let nodes = of
-            .iter()
-            .flatten()
-            .flat_map(|&cell| mesh.element_nodes(cell));
-        nodes.for_each(|&node| used[node as usize] = true);
-        for probe in probes {
-            let is_there = |cell: ElementId| of.iter().any(|cells| cells.contains(&cell));
-            let cells = probe.cell.into_iter();
-            let section = probe.section.map(|(cell, _)| cell);
-            if cells.chain(section).any(|cell| !is_there(cell)) {
-                let path = format!("probe.{}.at", probe.name);
-                let message =
-                    "the nearest cell is one of those that are removed inside an overlapping body";
-                let problem = Problem::new(path, message);
-                self.problems
-                    .push(problem.accepted(["a place in the body that stays"]));
-                continue;
-            }
-            let outside = |(node, _): &&(u32, f64)| !used[*node as usize];
-            let (message, accepted) = match probe.nodes.iter().filter(outside).count() {
-                0 => continue,
-                _ if !self.case.arlequin.is_empty() => (
-                    "the probe has nodes of cells that are removed inside an overlapping body",
-                    "a group of the body that stays",
-                ),
-                count if count == probe.nodes.len() => (
-                    "the probe is on a group without a node of a body",
-                    "a group of a body or of its surface",
-                ),
-                _ => continue,
-            };
-            let given = self.case.probe.get(&probe.name);
-            let on = given.and_then(|given| given.on.as_ref());
-            let key = if on.is_some() { "on" } else { "at" };
-            let path = format!("probe.{}.{key}", probe.name);
-            let problem = Problem::new(path, message).accepted([accepted]);
-            self.problems.push(match on {
-                Some(on) if accepted.ends_with("surface") => problem.found(on),
-                _ => problem,
-            });
+/// Refuses probes on nodes of no body. `of`: cells of each body; with overlaps without those that are removed.
+pub(super) fn within_bodies(
+    context: &Context,
+    mesh: &Mesh,
+    probes: &[BuiltProbe],
+    of: &[Vec<ElementId>],
+    problems: &mut Problems,
+) {
+    let mut used = vec![false; mesh.nodes.len()];
+    let nodes = of
+        .iter()
+        .flatten()
+        .flat_map(|&cell| mesh.element_nodes(cell));
+    nodes.for_each(|&node| used[node as usize] = true);
+    for probe in probes {
+        let is_there = |cell: ElementId| of.iter().any(|cells| cells.contains(&cell));
+        let cells = probe.cell.into_iter();
+        let section = probe.section.map(|(cell, _)| cell);
+        if cells.chain(section).any(|cell| !is_there(cell)) {
+            let path = format!("probe.{}.at", probe.name);
+            let message =
+                "the nearest cell is one of those that are removed inside an overlapping body";
+            let problem = Problem::new(path, message);
+            problems.push(problem.accepted(["a place in the body that stays"]));
+            continue;
         }
+        let outside = |(node, _): &&(u32, f64)| !used[*node as usize];
+        let (message, accepted) = match probe.nodes.iter().filter(outside).count() {
+            0 => continue,
+            _ if !context.case.arlequin.is_empty() => (
+                "the probe has nodes of cells that are removed inside an overlapping body",
+                "a group of the body that stays",
+            ),
+            count if count == probe.nodes.len() => (
+                "the probe is on a group without a node of a body",
+                "a group of a body or of its surface",
+            ),
+            _ => continue,
+        };
+        let given = context.case.probe.get(&probe.name);
+        let on = given.and_then(|given| given.on.as_ref());
+        let key = if on.is_some() { "on" } else { "at" };
+        let path = format!("probe.{}.{key}", probe.name);
+        let problem = Problem::new(path, message).accepted([accepted]);
+        problems.push(match on {
+            Some(on) if accepted.ends_with("surface") => problem.found(on),
+            _ => problem,
+        });
     }
 }
 

@@ -8,7 +8,8 @@ use carom_dynamics::{System, step_count};
 use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Plane;
 
-use super::Builder;
+use super::context::Context;
+use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::{Case, Reference, Sides};
 
@@ -25,74 +26,78 @@ pub struct ExactReference {
     pub axis: [f64; 3],
 }
 
-impl Builder<'_> {
-    pub(super) fn reference(&mut self, system: &System, end: f64) -> Option<ExactReference> {
-        let (name, sides, two) = match self.case.reference.as_ref()? {
-            Reference::TwoBars(bars) => ("two-bars", bars.sides, true),
-            Reference::BarOnWall(bar) => ("bar-on-wall", bar.sides, false),
-        };
-        let path = format!("reference.{name}");
-        let solved = match foreign(self.case) {
-            Some(what) => Err(format!("the exact solution has no {what}")),
-            None => solve(system, (sides, two), end, |body| self.joined(system, body)),
-        };
-        match solved {
-            Ok((solution, normal)) => Some(ExactReference {
-                name,
-                solution,
-                contact: 0,
-                axis: normal.map(|n| -n),
-            }),
-            Err(message) => {
-                let problem =
-                    Problem::new(path, format!("the case is not this problem: {message}"));
-                self.problems.push(problem);
-                None
-            }
+pub(super) fn lower(
+    context: &Context,
+    system: &System,
+    end: f64,
+    problems: &mut Problems,
+) -> Option<ExactReference> {
+    let (name, sides, two) = match context.case.reference.as_ref()? {
+        Reference::TwoBars(bars) => ("two-bars", bars.sides, true),
+        Reference::BarOnWall(bar) => ("bar-on-wall", bar.sides, false),
+    };
+    let path = format!("reference.{name}");
+    let solved = match foreign(context.case) {
+        Some(what) => Err(format!("the exact solution has no {what}")),
+        None => solve(system, (sides, two), end, |body| {
+            joined(context, system, body)
+        }),
+    };
+    match solved {
+        Ok((solution, normal)) => Some(ExactReference {
+            name,
+            solution,
+            contact: 0,
+            axis: normal.map(|n| -n),
+        }),
+        Err(message) => {
+            let problem = Problem::new(path, format!("the case is not this problem: {message}"));
+            problems.push(problem);
+            None
         }
     }
+}
 
-    /// The bodies that joints make one with a body, itself first.
-    fn joined(&self, system: &System, body: usize) -> Vec<usize> {
-        let case = self.case;
-        let names: Vec<&str> = case.body.names().collect();
-        let number = |name: &str| names.iter().position(|one| *one == name);
-        let overlaps = case.arlequin.iter().map(|(_, j)| (&j.inner, &j.outer));
-        let borders = case.interface.iter().map(|(_, j)| (&j.inner, &j.outer));
-        let pairs: Vec<(usize, usize)> = overlaps
-            .chain(borders)
-            .filter_map(|(inner, outer)| Some((number(inner)?, number(outer)?)))
-            .chain(self.tied_bodies(system))
-            .collect();
-        let mut all = vec![body];
-        let mut next = 0;
-        while let Some(&one) = all.get(next) {
-            next += 1;
-            for &(inner, outer) in &pairs {
-                for (from, to) in [(inner, outer), (outer, inner)] {
-                    if from == one && !all.contains(&to) {
-                        all.push(to);
-                    }
+/// The bodies that joints make one with a body, itself first.
+fn joined(context: &Context, system: &System, body: usize) -> Vec<usize> {
+    let case = context.case;
+    let names: Vec<&str> = case.body.names().collect();
+    let number = |name: &str| names.iter().position(|one| *one == name);
+    let overlaps = case.arlequin.iter().map(|(_, j)| (&j.inner, &j.outer));
+    let borders = case.interface.iter().map(|(_, j)| (&j.inner, &j.outer));
+    let pairs: Vec<(usize, usize)> = overlaps
+        .chain(borders)
+        .filter_map(|(inner, outer)| Some((number(inner)?, number(outer)?)))
+        .chain(tied_bodies(context, system))
+        .collect();
+    let mut all = vec![body];
+    let mut next = 0;
+    while let Some(&one) = all.get(next) {
+        next += 1;
+        for &(inner, outer) in &pairs {
+            for (from, to) in [(inner, outer), (outer, inner)] {
+                if from == one && !all.contains(&to) {
+                    all.push(to);
                 }
             }
         }
-        all
     }
+    all
+}
 
-    /// The bodies whose surfaces are tied, by pairs.
-    fn tied_bodies(&self, system: &System) -> Vec<(usize, usize)> {
-        let owner = |group: &String| {
-            let first = *system.mesh.groups.get(group)?.elements.first()?;
-            let node = system.number[system.mesh.element_nodes(first)[0] as usize];
-            let mut bodies = system.body_masses.iter();
-            bodies.position(|masses| masses.iter().any(|(own, _)| *own == node))
-        };
-        let transitions = self.case.transition.iter();
-        let surfaces = transitions.filter_map(|(_, given)| given.surfaces.as_ref());
-        surfaces
-            .filter_map(|[one, other]| Some((owner(one)?, owner(other)?)))
-            .collect()
-    }
+/// The bodies whose surfaces are tied, by pairs.
+fn tied_bodies(context: &Context, system: &System) -> Vec<(usize, usize)> {
+    let owner = |group: &String| {
+        let first = *system.mesh.groups.get(group)?.elements.first()?;
+        let node = system.number[system.mesh.element_nodes(first)[0] as usize];
+        let mut bodies = system.body_masses.iter();
+        bodies.position(|masses| masses.iter().any(|(own, _)| *own == node))
+    };
+    let transitions = context.case.transition.iter();
+    let surfaces = transitions.filter_map(|(_, given)| given.surfaces.as_ref());
+    surfaces
+        .filter_map(|[one, other]| Some((owner(one)?, owner(other)?)))
+        .collect()
 }
 
 /// What a case has that acts on its bars and that the exact solution does not know.

@@ -4,7 +4,8 @@ use carom_bodies::{BeamSection, Kinematics};
 use carom_dynamics::ModelBody;
 use carom_mesh::{CellsByNode, ElementId, Group, Mesh, Surface};
 
-use super::Builder;
+use super::lookup;
+use super::problems::Problems;
 use super::shells::around_shells;
 use crate::error::Problem;
 
@@ -15,72 +16,72 @@ struct Axes<'a> {
     cells: &'a [ElementId],
 }
 
-impl Builder<'_> {
-    /// The surface of a contact: sides of cells, or the round surface around lines and points of beams. `cells`: of all bodies.
-    pub(super) fn contact_surface(
-        &mut self,
-        mesh: &Mesh,
-        (bodies, cells): (&[ModelBody], &CellsByNode),
-        path: &str,
-        name: &str,
-    ) -> Option<Surface> {
-        let group = self.group(mesh, path, name)?;
-        if let Some(surface) = around_shells(mesh, bodies, group) {
-            return Some(surface);
-        }
-        let axes = axes(mesh, bodies, group);
-        let flat = group.dim == 0 && axes.iter().all(|axes| axes.section.radius == Some(0.0));
-        if axes.is_empty() || flat {
-            return self.surface(mesh, &cells.beside(mesh, group), path, name);
-        }
-        let known: Vec<bool> = axes.iter().map(|axes| self.has_surface(axes)).collect();
-        if known.contains(&false) {
-            return None;
-        }
-        let own: Vec<ElementId> = axes.iter().flat_map(|axes| axes.cells).copied().collect();
-        let radius = |cell: ElementId| {
-            let owner = axes
-                .iter()
-                .find(|axes| axes.cells.binary_search(&cell).is_ok());
-            owner.and_then(|axes| axes.section.radius).unwrap_or(0.0)
-        };
-        match Surface::of_axes(mesh, group, &own, radius) {
-            Ok(surface) => Some(surface),
-            Err(error) => {
-                let problem = Problem::new(path, error.to_string()).found(name);
-                self.problems
-                    .push(problem.accepted(["lines and points of beams"]));
-                None
-            }
+/// The surface of a contact: sides of cells, or the round surface around lines and points of beams. `cells`: of all bodies.
+pub(super) fn contact_surface(
+    mesh: &Mesh,
+    (bodies, cells): (&[ModelBody], &CellsByNode),
+    path: &str,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<Surface> {
+    let group = problems.group(mesh, path, name)?;
+    if let Some(surface) = around_shells(mesh, bodies, group) {
+        return Some(surface);
+    }
+    let axes = axes(mesh, bodies, group);
+    let flat = group.dim == 0 && axes.iter().all(|axes| axes.section.radius == Some(0.0));
+    if axes.is_empty() || flat {
+        return lookup::surface(mesh, &cells.beside(mesh, group), path, name, problems);
+    }
+    let known: Vec<bool> = axes
+        .iter()
+        .map(|axes| has_surface(axes, problems))
+        .collect();
+    if known.contains(&false) {
+        return None;
+    }
+    let own: Vec<ElementId> = axes.iter().flat_map(|axes| axes.cells).copied().collect();
+    let radius = |cell: ElementId| {
+        let owner = axes
+            .iter()
+            .find(|axes| axes.cells.binary_search(&cell).is_ok());
+        owner.and_then(|axes| axes.section.radius).unwrap_or(0.0)
+    };
+    match Surface::of_axes(mesh, group, &own, radius) {
+        Ok(surface) => Some(surface),
+        Err(error) => {
+            let problem = Problem::new(path, error.to_string()).found(name);
+            problems.push(problem.accepted(["lines and points of beams"]));
+            None
         }
     }
+}
 
-    /// Refuses beams of which a contact does not know where their surface is.
-    fn has_surface(&mut self, axes: &Axes) -> bool {
-        let path = format!("body.{}.section.beam", axes.body);
-        if axes.section.offset != [0.0; 2] {
-            let message = "contacts of beams whose axis is beside their nodes are not available";
-            let problem = Problem::new(format!("{path}.offset"), message);
-            self.problems.push(
-                problem
-                    .found(format!("{:?} m", axes.section.offset))
-                    .accepted(["no `offset`", "a stop between nodes"]),
-            );
-            return false;
-        }
-        if axes.section.radius.is_none() {
-            let message = "a contact must know how far the surface of the beam is from its axis, and this shape does not say";
-            let problem = Problem::new(path, message);
-            self.problems.push(problem.accepted([
-                "`radius`",
-                "shape.circle",
-                "shape.tube",
-                "in the plane: shape.rectangle, shape.i",
-            ]));
-            return false;
-        }
-        true
+/// Refuses beams of which a contact does not know where their surface is.
+fn has_surface(axes: &Axes, problems: &mut Problems) -> bool {
+    let path = format!("body.{}.section.beam", axes.body);
+    if axes.section.offset != [0.0; 2] {
+        let message = "contacts of beams whose axis is beside their nodes are not available";
+        let problem = Problem::new(format!("{path}.offset"), message);
+        problems.push(
+            problem
+                .found(format!("{:?} m", axes.section.offset))
+                .accepted(["no `offset`", "a stop between nodes"]),
+        );
+        return false;
     }
+    if axes.section.radius.is_none() {
+        let message = "a contact must know how far the surface of the beam is from its axis, and this shape does not say";
+        let problem = Problem::new(path, message);
+        problems.push(problem.accepted([
+            "`radius`",
+            "shape.circle",
+            "shape.tube",
+            "in the plane: shape.rectangle, shape.i",
+        ]));
+        return false;
+    }
+    true
 }
 
 /// The beams of which a group is cells or points; none if it is anything else.

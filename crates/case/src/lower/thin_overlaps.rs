@@ -5,136 +5,144 @@ use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh};
 use carom_zones::{Error, Glued, glue_thin};
 
-use super::Builder;
-use super::arlequin::{BuiltOverlap, FEW_LAYERS, Joints, is_thin, weigh, weighting};
+use super::context::Context;
 use super::held::Held;
-use super::unfit::doubt;
+use super::joints::{self, BuiltOverlap, FEW_LAYERS, Joints, is_thin, weigh, weighting};
+use super::problems::Problems;
+use super::unfit::{self, doubt};
 use crate::error::Problem;
 use crate::schema::{self, Bracket, BracketName, Mediator};
 
-impl Builder<'_> {
-    /// One overlap of a beam or shell and a solid: its rows, with cells and weights of the two bodies changed.
-    pub(super) fn thin_overlap(
-        &mut self,
-        (name, given): (&str, &schema::Arlequin),
-        mesh: &Mesh,
-        bodies: &mut [ModelBody],
-        ([inner, outer], held): ([usize; 2], &Held),
-        joints: &mut Joints,
-    ) -> Option<carom_arlequin::Rows> {
-        let path = format!("arlequin.{name}");
-        let pair = [(&given.inner, inner), (&given.outer, outer)];
-        let thin = usize::from(is_thin(&bodies[outer]));
-        self.suits_a_solid(&path, given, bodies, (pair, thin))?;
-        let region = self.region(mesh, &path, &given.overlap)?;
-        let specs = [&bodies[inner].spec, &bodies[outer].spec];
-        let glued = match glue_thin(mesh, specs, &region, &weighting(given.weights)) {
-            Ok(glued) => glued,
-            Err(Error::Overlap(error)) => {
-                let all = specs.map(|spec| spec.cells.clone()).concat();
-                let problem = self.unfit((&path, name), mesh, &error, &all);
-                self.problems.push(problem);
-                return None;
-            }
-            Err(error) => {
-                self.problems.push(Problem::new(path, error.to_string()));
-                return None;
-            }
-        };
-        self.no_hinges(&path, (name, mesh), &bodies[pair[thin].1], &glued)?;
-        let built = BuiltOverlap {
-            name: name.to_string(),
-            measure: glued.measure,
-            layers: glued.layers,
-            sizes: glued.sizes,
-            removed: glued.removed.len(),
-        };
-        let all = [&glued.touched[..], &glued.removed].concat();
-        self.enter(mesh, built, all, joints)?;
-        for warning in &glued.weights.warnings {
-            self.warnings
-                .push(format!("overlap `{name}`: {}", doubt(warning)));
+/// One overlap of a beam or shell and a solid: its rows, with cells and weights of the two bodies changed.
+pub(super) fn thin_overlap(
+    context: &Context,
+    (name, given): (&str, &schema::Arlequin),
+    mesh: &Mesh,
+    bodies: &mut [ModelBody],
+    ([inner, outer], held): ([usize; 2], &Held),
+    joints: &mut Joints,
+    problems: &mut Problems,
+) -> Option<carom_arlequin::Rows> {
+    let path = format!("arlequin.{name}");
+    let pair = [(&given.inner, inner), (&given.outer, outer)];
+    let thin = usize::from(is_thin(&bodies[outer]));
+    suits_a_solid(&path, given, bodies, (pair, thin), problems)?;
+    let region = joints::region(mesh, &path, &given.overlap, problems)?;
+    let specs = [&bodies[inner].spec, &bodies[outer].spec];
+    let glued = match glue_thin(mesh, specs, &region, &weighting(given.weights)) {
+        Ok(glued) => glued,
+        Err(Error::Overlap(error)) => {
+            let all = specs.map(|spec| spec.cells.clone()).concat();
+            let problem = unfit::unfit(context, (&path, name), mesh, &error, &all);
+            problems.push(problem);
+            return None;
         }
-        let solid = &bodies[pair[1 - thin].1].spec;
-        let poisson = solid.material.initial().poisson;
-        if matches!(solid.kinematics, Kinematics::PlaneStrain { .. }) && poisson != 0.0 {
-            self.warnings.push(format!(
-                "overlap `{name}`: in plane strain a body is stiffer in bending than its beam, by 1/(1 - ν²) = {:.3}",
-                1.0 / (1.0 - poisson * poisson),
-            ));
+        Err(error) => {
+            problems.push(Problem::new(path, error.to_string()));
+            return None;
         }
-        if glued.layers < FEW_LAYERS {
-            self.warnings.push(format!(
-                "overlap `{name}`: {:.2} cells of the coarser body long; two to four transmit waves better",
-                glued.layers,
-            ));
-        }
-        let weights = [&glued.weights.inner, &glued.weights.outer];
-        for (k, body) in [inner, outer].into_iter().enumerate() {
-            weigh(mesh, &mut bodies[body], &glued.cells[k], weights[k]);
-            bodies[body].spec.exact_products = true;
-        }
-        let mut rows = glued.rows;
-        let dropped = held.drop_rows(&mut rows);
-        self.name_rows(
-            name,
-            mesh,
-            &dropped,
-            "removed: supports hold both bodies there",
-        );
-        Some(rows)
+    };
+    no_hinges(
+        context,
+        &path,
+        (name, mesh),
+        &bodies[pair[thin].1],
+        &glued,
+        problems,
+    )?;
+    let built = BuiltOverlap {
+        name: name.to_string(),
+        measure: glued.measure,
+        layers: glued.layers,
+        sizes: glued.sizes,
+        removed: glued.removed.len(),
+    };
+    let all = [&glued.touched[..], &glued.removed].concat();
+    joints::enter(context, mesh, built, all, joints, problems)?;
+    for warning in &glued.weights.warnings {
+        problems.warn(format!("overlap `{name}`: {}", doubt(warning)));
     }
+    let solid = &bodies[pair[1 - thin].1].spec;
+    let poisson = solid.material.initial().poisson;
+    if matches!(solid.kinematics, Kinematics::PlaneStrain { .. }) && poisson != 0.0 {
+        problems.warn(format!(
+            "overlap `{name}`: in plane strain a body is stiffer in bending than its beam, by 1/(1 - ν²) = {:.3}",
+            1.0 / (1.0 - poisson * poisson),
+        ));
+    }
+    if glued.layers < FEW_LAYERS {
+        problems.warn(format!(
+            "overlap `{name}`: {:.2} cells of the coarser body long; two to four transmit waves better",
+            glued.layers,
+        ));
+    }
+    let weights = [&glued.weights.inner, &glued.weights.outer];
+    for (k, body) in [inner, outer].into_iter().enumerate() {
+        weigh(mesh, &mut bodies[body], &glued.cells[k], weights[k]);
+        bodies[body].spec.exact_products = true;
+    }
+    let mut rows = glued.rows;
+    let dropped = held.drop_rows(&mut rows);
+    unfit::name_rows(
+        name,
+        mesh,
+        &dropped,
+        "removed: supports hold both bodies there",
+        problems,
+    );
+    Some(rows)
+}
 
-    /// Refuses two thin bodies, solids that they do not continue, thin bodies that cannot share a volume, and choices that they do not have.
-    fn suits_a_solid(
-        &mut self,
-        path: &str,
-        given: &schema::Arlequin,
-        bodies: &[ModelBody],
-        (pair, thin): ([(&String, usize); 2], usize),
-    ) -> Option<()> {
-        let (name, body) = pair[thin];
-        let (other, solid) = pair[1 - thin];
-        let keys = ["inner", "outer"].map(|key| format!("{path}.{key}"));
-        let thin_body = Thin::of(&bodies[body])?;
-        let refused = thin_body
-            .refuse_other((&keys[1 - thin], other), &bodies[solid])
-            .or_else(|| thin_body.refuse_own((&keys[thin], name), &bodies[body]))
-            .or_else(|| refuse_turns((&keys[1 - thin], other), [&bodies[body], &bodies[solid]]))
-            .or_else(|| thin_body.refuse_choice(path, given));
-        match refused {
-            None => Some(()),
-            Some(problem) => {
-                self.problems.push(problem);
-                None
-            }
+/// Refuses two thin bodies, solids that they do not continue, thin bodies that cannot share a volume, and choices that they do not have.
+fn suits_a_solid(
+    path: &str,
+    given: &schema::Arlequin,
+    bodies: &[ModelBody],
+    (pair, thin): ([(&String, usize); 2], usize),
+    problems: &mut Problems,
+) -> Option<()> {
+    let (name, body) = pair[thin];
+    let (other, solid) = pair[1 - thin];
+    let keys = ["inner", "outer"].map(|key| format!("{path}.{key}"));
+    let thin_body = Thin::of(&bodies[body])?;
+    let refused = thin_body
+        .refuse_other((&keys[1 - thin], other), &bodies[solid])
+        .or_else(|| thin_body.refuse_own((&keys[thin], name), &bodies[body]))
+        .or_else(|| refuse_turns((&keys[1 - thin], other), [&bodies[body], &bodies[solid]]))
+        .or_else(|| thin_body.refuse_choice(path, given));
+    match refused {
+        None => Some(()),
+        Some(problem) => {
+            problems.push(problem);
+            None
         }
     }
+}
 
-    /// Refuses hinges in an overlap, whose sections move otherwise than the nodes.
-    fn no_hinges(
-        &mut self,
-        path: &str,
-        (name, mesh): (&str, &Mesh),
-        beam: &ModelBody,
-        glued: &Glued,
-    ) -> Option<()> {
-        let releases = beam.spec.releases.iter().map(|release| release.cell);
-        let inside: Vec<ElementId> = releases
-            .filter(|cell| glued.touched.binary_search(cell).is_ok())
-            .collect();
-        if inside.is_empty() {
-            return Some(());
-        }
-        let problem = Problem::new(
-            format!("{path}.overlap"),
-            "a hinge of the beam in the overlap",
-        )
-        .accepted(["hinges outside the overlap"]);
-        let problem = self.shown(problem, (name, mesh), &inside);
-        self.problems.push(problem);
-        None
+/// Refuses hinges in an overlap, whose sections move otherwise than the nodes.
+fn no_hinges(
+    context: &Context,
+    path: &str,
+    (name, mesh): (&str, &Mesh),
+    beam: &ModelBody,
+    glued: &Glued,
+    problems: &mut Problems,
+) -> Option<()> {
+    let releases = beam.spec.releases.iter().map(|release| release.cell);
+    let inside: Vec<ElementId> = releases
+        .filter(|cell| glued.touched.binary_search(cell).is_ok())
+        .collect();
+    if inside.is_empty() {
+        return Some(());
     }
+    let problem = Problem::new(
+        format!("{path}.overlap"),
+        "a hinge of the beam in the overlap",
+    )
+    .accepted(["hinges outside the overlap"]);
+    let problem = unfit::shown(context, problem, (name, mesh), &inside);
+    problems.push(problem);
+    None
 }
 
 /// Kinds of thin bodies.

@@ -5,68 +5,65 @@ use carom_dynamics::{ModelBody, ModelConstraint};
 use carom_mesh::{Bounds, ElementId, Face, Mesh, Surface};
 use carom_zones::mortar_rows;
 
-use super::Builder;
+use super::lookup;
+use super::problems::Problems;
 use crate::error::Problem;
 
-impl Builder<'_> {
-    /// The rows between two surfaces whose nodes need not match, ([`mortar_rows`]). `sides`: cells that may have such surfaces.
-    pub(super) fn tied(
-        &mut self,
-        (mesh, bodies): (&Mesh, &[ModelBody]),
-        (name, path): (&str, &str),
-        names: &[String; 2],
-        sides: &[ElementId],
-    ) -> Option<ModelConstraint> {
-        let path = format!("{path}.surfaces");
-        let mut surface = |k: usize| {
-            let place = format!("{path}[{k}]");
-            self.surface(mesh, sides, &place, &names[k])
-        };
-        let (one, other) = (surface(0), surface(1));
-        let (one, other) = (one?, other?);
-        let refuse = |message: &str, accepted: &str| {
-            let problem = Problem::new(path.clone(), message).found(names.join(" and "));
-            problem.accepted([accepted])
-        };
-        if one
-            .nodes
-            .iter()
-            .any(|node| other.nodes.binary_search(node).is_ok())
-        {
-            let accepted = "surfaces of two bodies with nodes of their own";
-            self.problems
-                .push(refuse("these surfaces have common nodes", accepted));
-            return None;
-        }
-        let parent = one.faces.first().map(|face| face.parent)?;
-        let body = bodies
-            .iter()
-            .find(|body| body.spec.cells.contains(&parent))?;
-        let rows = mortar_rows(mesh, &one, &other, |x| {
-            body.spec.kinematics.surface_factor(x)
-        });
-        if rows.rows.is_empty() {
-            let accepted = "two surfaces that lie on each other";
-            self.problems.push(refuse(
-                "these surfaces are nowhere opposite to each other",
-                accepted,
-            ));
-            return None;
-        }
-        let (gap, most) = (
-            gap(mesh, &rows),
-            APART * diagonal(mesh, &one).min(diagonal(mesh, &other)),
-        );
-        if gap > most {
-            let message = format!("these surfaces are {gap:.4e} m apart");
-            let accepted = format!(
-                "surfaces that lie on each other, within {most:.4e} m (a quarter of a face)"
-            );
-            self.problems.push(refuse(&message, &accepted));
-            return None;
-        }
-        Some(ModelConstraint::of_rows(name, &rows.rows, mesh.dim))
+/// The rows between two surfaces whose nodes need not match, ([`mortar_rows`]). `sides`: cells that may have such surfaces.
+pub(super) fn tied(
+    (mesh, bodies): (&Mesh, &[ModelBody]),
+    (name, path): (&str, &str),
+    names: &[String; 2],
+    sides: &[ElementId],
+    problems: &mut Problems,
+) -> Option<ModelConstraint> {
+    let path = format!("{path}.surfaces");
+    let mut surface = |k: usize| {
+        let place = format!("{path}[{k}]");
+        lookup::surface(mesh, sides, &place, &names[k], problems)
+    };
+    let (one, other) = (surface(0), surface(1));
+    let (one, other) = (one?, other?);
+    let refuse = |message: &str, accepted: &str| {
+        let problem = Problem::new(path.clone(), message).found(names.join(" and "));
+        problem.accepted([accepted])
+    };
+    if one
+        .nodes
+        .iter()
+        .any(|node| other.nodes.binary_search(node).is_ok())
+    {
+        let accepted = "surfaces of two bodies with nodes of their own";
+        problems.push(refuse("these surfaces have common nodes", accepted));
+        return None;
     }
+    let parent = one.faces.first().map(|face| face.parent)?;
+    let body = bodies
+        .iter()
+        .find(|body| body.spec.cells.contains(&parent))?;
+    let rows = mortar_rows(mesh, &one, &other, |x| {
+        body.spec.kinematics.surface_factor(x)
+    });
+    if rows.rows.is_empty() {
+        let accepted = "two surfaces that lie on each other";
+        problems.push(refuse(
+            "these surfaces are nowhere opposite to each other",
+            accepted,
+        ));
+        return None;
+    }
+    let (gap, most) = (
+        gap(mesh, &rows),
+        APART * diagonal(mesh, &one).min(diagonal(mesh, &other)),
+    );
+    if gap > most {
+        let message = format!("these surfaces are {gap:.4e} m apart");
+        let accepted =
+            format!("surfaces that lie on each other, within {most:.4e} m (a quarter of a face)");
+        problems.push(refuse(&message, &accepted));
+        return None;
+    }
+    Some(ModelConstraint::of_rows(name, &rows.rows, mesh.dim))
 }
 
 /// Distance of tied surfaces over the mean diagonal of their faces, above which they are not the same surface meshed twice: that of faceted round ones is

@@ -7,10 +7,13 @@ use carom_dynamics::ModelBody;
 use carom_mesh::{Mesh, Surface};
 use carom_zones::mortar_rows;
 
-use super::Builder;
-use super::arlequin::Joints;
+use super::context::Context;
 use super::held::Held;
+use super::joints::{self, Joints};
+use super::lookup;
 use super::plan::Plan;
+use super::problems::{Problems, plural};
+use super::unfit;
 use crate::error::Problem;
 
 /// Largest distance of nodes at the same place, as a part of the size of the mesh.
@@ -136,113 +139,128 @@ impl<'a> Ties<'a> {
     }
 }
 
-impl Builder<'_> {
-    /// The rows between nodes at the same place, without those that are tied already.
-    fn nodes_tied(
-        &mut self,
-        path: &str,
-        name: &str,
-        [inner, outer]: [usize; 2],
-        ties: &mut Ties,
-    ) -> Option<Rows> {
-        let mut rows = match ties.rows(inner, outer) {
-            Ok(rows) => rows,
-            Err(error) => {
-                let problem = Problem::new(path, error.to_string());
-                self.problems.push(problem.accepted([
-                    "two bodies with nodes at the same places",
-                    "surfaces = [...], whose nodes need not match",
-                ]));
-                return None;
-            }
-        };
-        let known = ties.join([inner, outer], &mut rows);
-        self.name_rows(
-            name,
-            ties.mesh,
-            &known,
-            "removed: other interfaces tie them already",
-        );
-        Some(rows)
-    }
-
-    /// The rows between two surfaces whose nodes need not match.
-    fn mortar(
-        &mut self,
-        path: &str,
-        names: &[String; 2],
-        sides: [usize; 2],
-        ties: &mut Ties,
-    ) -> Option<Rows> {
-        let path = format!("{path}.surfaces");
-        let bodies = ties.bodies;
-        let mut surface = |k: usize| {
-            let cells = &bodies[sides[k]].spec.cells;
-            self.surface(ties.mesh, cells, &format!("{path}[{k}]"), &names[k])
-        };
-        let (inner, outer) = (surface(0), surface(1));
-        let surfaces = [inner?, outer?];
-        let kinematics = bodies[sides[0]].spec.kinematics;
-        let rows = mortar_rows(ties.mesh, &surfaces[0], &surfaces[1], |x| {
-            kinematics.surface_factor(x)
-        });
-        if rows.rows.is_empty() {
-            let message = "these surfaces are nowhere opposite to each other";
-            let problem = Problem::new(path, message).found(names.join(" and "));
-            self.problems
-                .push(problem.accepted(["two surfaces that face each other"]));
+/// The rows between nodes at the same place, without those that are tied already.
+fn nodes_tied(
+    path: &str,
+    name: &str,
+    [inner, outer]: [usize; 2],
+    ties: &mut Ties,
+    problems: &mut Problems,
+) -> Option<Rows> {
+    let mut rows = match ties.rows(inner, outer) {
+        Ok(rows) => rows,
+        Err(error) => {
+            let problem = Problem::new(path, error.to_string());
+            problems.push(problem.accepted([
+                "two bodies with nodes at the same places",
+                "surfaces = [...], whose nodes need not match",
+            ]));
             return None;
         }
-        ties.join_surfaces(sides, &surfaces);
-        Some(rows)
-    }
+    };
+    let known = ties.join([inner, outer], &mut rows);
+    unfit::name_rows(
+        name,
+        ties.mesh,
+        &known,
+        "removed: other interfaces tie them already",
+        problems,
+    );
+    Some(rows)
+}
 
-    /// The borders where zones are tied.
-    pub(super) fn borders(
-        &mut self,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        held: &Held,
-        joints: &mut Joints,
-    ) {
-        let case = self.case;
-        let mut ties = Ties::new(mesh, bodies, &self.plan);
-        for (name, given) in case.interface.iter() {
-            let path = format!("interface.{name}");
-            let (Some(inner), Some(outer)) = (
-                self.body(&format!("{path}.inner"), &given.inner),
-                self.body(&format!("{path}.outer"), &given.outer),
-            ) else {
-                continue;
-            };
-            let sides = [inner, outer];
-            let found = match &given.surfaces {
-                Some(surfaces) => self.mortar(&path, surfaces, sides, &mut ties),
-                None => self.nodes_tied(&path, name, sides, &mut ties),
-            };
-            let Some(mut rows) = found else { continue };
-            let dropped = held.drop_rows(&mut rows);
-            self.name_rows(
-                name,
-                mesh,
-                &dropped,
-                "removed: supports hold both bodies there",
-            );
-            self.link(name, (&given.inner, &given.outer), rows, joints);
-        }
-        for (bodies, nodes) in ties.loose() {
-            let message = format!(
-                "the bodies `{}` and `{}` share {} and are in two zones, which nothing ties",
-                bodies[0],
-                bodies[1],
-                super::plural(nodes.len(), "node")
-            );
-            let accepted = format!(
-                "[interface.<name>] with inner = \"{}\", outer = \"{}\"",
-                bodies[0], bodies[1]
-            );
-            self.problems
-                .push(Problem::new("zone", message).accepted([accepted]));
-        }
+/// The rows between two surfaces whose nodes need not match.
+fn mortar(
+    path: &str,
+    names: &[String; 2],
+    sides: [usize; 2],
+    ties: &mut Ties,
+    problems: &mut Problems,
+) -> Option<Rows> {
+    let path = format!("{path}.surfaces");
+    let bodies = ties.bodies;
+    let mut surface = |k: usize| {
+        let cells = &bodies[sides[k]].spec.cells;
+        lookup::surface(
+            ties.mesh,
+            cells,
+            &format!("{path}[{k}]"),
+            &names[k],
+            problems,
+        )
+    };
+    let (inner, outer) = (surface(0), surface(1));
+    let surfaces = [inner?, outer?];
+    let kinematics = bodies[sides[0]].spec.kinematics;
+    let rows = mortar_rows(ties.mesh, &surfaces[0], &surfaces[1], |x| {
+        kinematics.surface_factor(x)
+    });
+    if rows.rows.is_empty() {
+        let message = "these surfaces are nowhere opposite to each other";
+        let problem = Problem::new(path, message).found(names.join(" and "));
+        problems.push(problem.accepted(["two surfaces that face each other"]));
+        return None;
+    }
+    ties.join_surfaces(sides, &surfaces);
+    Some(rows)
+}
+
+/// The borders where zones are tied.
+pub(super) fn borders(
+    context: &Context,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    held: &Held,
+    joints: &mut Joints,
+    problems: &mut Problems,
+) {
+    let case = context.case;
+    let mut ties = Ties::new(mesh, bodies, &context.plan);
+    for (name, given) in case.interface.iter() {
+        let path = format!("interface.{name}");
+        let (Some(inner), Some(outer)) = (
+            lookup::body(
+                context.case,
+                &format!("{path}.inner"),
+                &given.inner,
+                problems,
+            ),
+            lookup::body(
+                context.case,
+                &format!("{path}.outer"),
+                &given.outer,
+                problems,
+            ),
+        ) else {
+            continue;
+        };
+        let sides = [inner, outer];
+        let found = match &given.surfaces {
+            Some(surfaces) => mortar(&path, surfaces, sides, &mut ties, problems),
+            None => nodes_tied(&path, name, sides, &mut ties, problems),
+        };
+        let Some(mut rows) = found else { continue };
+        let dropped = held.drop_rows(&mut rows);
+        unfit::name_rows(
+            name,
+            mesh,
+            &dropped,
+            "removed: supports hold both bodies there",
+            problems,
+        );
+        joints::link(context, name, (&given.inner, &given.outer), rows, joints);
+    }
+    for (bodies, nodes) in ties.loose() {
+        let message = format!(
+            "the bodies `{}` and `{}` share {} and are in two zones, which nothing ties",
+            bodies[0],
+            bodies[1],
+            plural(nodes.len(), "node")
+        );
+        let accepted = format!(
+            "[interface.<name>] with inner = \"{}\", outer = \"{}\"",
+            bodies[0], bodies[1]
+        );
+        problems.push(Problem::new("zone", message).accepted([accepted]));
     }
 }

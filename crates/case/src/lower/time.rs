@@ -7,7 +7,9 @@ use carom_dynamics::{Adaptive, Closing, ModelBody, Scheme, System, step_count};
 use carom_mesh::Mesh;
 use carom_zones::Error;
 
-use super::Builder;
+use super::context::Context;
+use super::problems::Problems;
+use super::refused;
 use crate::error::Problem;
 use crate::schema::{self, LargestStep, Mass, MeshStep, Step, StepRule};
 
@@ -25,191 +27,192 @@ pub(super) enum Size {
     Critical(f64),
 }
 
-impl Builder<'_> {
-    /// The scheme of the bodies that take the outer step; of the first such zone, if there are several.
-    pub(super) fn outer_scheme(&self) -> Scheme {
-        let outer = self.plan.zones.iter().find(|zone| zone.substeps == 1);
-        outer.map_or(self.case.time.scheme(), |zone| zone.scheme)
-    }
+/// The scheme of the bodies that take the outer step; of the first such zone, if there are several.
+pub(super) fn outer_scheme(context: &Context) -> Scheme {
+    let outer = context.plan.zones.iter().find(|zone| zone.substeps == 1);
+    outer.map_or(context.case.time.scheme(), |zone| zone.scheme)
+}
 
-    /// Refuses a critical step of implicit schemes, and masses that a scheme cannot take.
-    pub(super) fn schemes(&mut self) {
-        let zones = self.plan.zones.iter().filter(|zone| zone.substeps == 1);
-        let mut outer: Vec<Scheme> = zones.map(|zone| zone.scheme).collect();
-        if self.plan.zones.is_empty() {
-            outer.push(self.case.time.scheme());
-        }
-        if let (path, Size::Critical(_)) = self.size()
-            && let Some(scheme) = outer.first().map(Scheme::get)
-            && outer.iter().all(|scheme| !scheme.get().is_explicit())
-        {
-            let problem = Problem::new(path, "only an explicit scheme has a critical step");
-            self.problems.push(
+/// Refuses a critical step of implicit schemes, and masses that a scheme cannot take.
+pub(super) fn schemes(context: &Context, problems: &mut Problems) {
+    let zones = context.plan.zones.iter().filter(|zone| zone.substeps == 1);
+    let mut outer: Vec<Scheme> = zones.map(|zone| zone.scheme).collect();
+    if context.plan.zones.is_empty() {
+        outer.push(context.case.time.scheme());
+    }
+    if let (path, Size::Critical(_)) = size(context)
+        && let Some(scheme) = outer.first().map(Scheme::get)
+        && outer.iter().all(|scheme| !scheme.get().is_explicit())
+    {
+        let problem = Problem::new(path, "only an explicit scheme has a critical step");
+        problems.push(
+            problem
+                .found(scheme.name())
+                .accepted(["step = { courant = ... }", "a fixed step"]),
+        );
+    }
+    for (number, (name, body)) in context.case.body.iter().enumerate() {
+        let scheme = context.scheme_of(number);
+        if scheme.get().needs_lumped_mass() && body.mass == Some(Mass::Consistent) {
+            let message = "the scheme divides by the mass: it must be diagonal";
+            let problem = Problem::new(format!("body.{name}.mass"), message);
+            problems.push(
                 problem
-                    .found(scheme.name())
-                    .accepted(["step = { courant = ... }", "a fixed step"]),
+                    .found(format!("consistent with {}", scheme.get().name()))
+                    .accepted(["lumped"]),
             );
         }
-        for (number, (name, body)) in self.case.body.iter().enumerate() {
-            let zone = self.plan.zone_of(number);
-            let scheme = zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme);
-            if scheme.get().needs_lumped_mass() && body.mass == Some(Mass::Consistent) {
-                let message = "the scheme divides by the mass: it must be diagonal";
-                let problem = Problem::new(format!("body.{name}.mass"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("consistent with {}", scheme.get().name()))
-                        .accepted(["lumped"]),
-                );
-            }
-        }
     }
+}
 
-    /// Refuses laws that the scheme of their contact cannot take, one problem a reason.
-    pub(super) fn laws(&mut self, scheme_of: impl Fn(&str) -> Scheme) {
-        for (name, contact) in self.case.contact.iter() {
-            let scheme = scheme_of(name);
-            let scheme = scheme.get();
-            // what is wrong with a curve is told where the law is built
-            let Ok(law) = contact.law.law(&Defaults::default()) else {
-                continue;
-            };
-            let level = law.get().level();
-            if scheme.takes(level) {
-                continue;
-            }
-            if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
-                let message = "the contact impulses of this scheme act on the velocity at the end of the step: the scheme needs a law in the rate";
-                let problem = Problem::new(format!("contact.{name}.law"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("a law in the gap with {}", scheme.name()))
-                        .accepted(["velocity", "compliance", "restitution"]),
-                );
-            } else if level == Level::Gap {
-                let message = "in an explicit scheme the displacement at the end of the step does not depend on the contact force: this law is impossible";
-                let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("displacement with {}", scheme.name()))
-                        .accepted(["velocity", "damped"]),
-                );
-            } else {
-                let message = "the contact forces of this scheme act on the displacement at the end of the step: the scheme needs the displacement law";
-                let problem = Problem::new(format!("contact.{name}.law"), message);
-                self.problems.push(
-                    problem
-                        .found(format!("another law with {}", scheme.name()))
-                        .accepted(["displacement"]),
-                );
-            }
-        }
-    }
-
-    /// The step in seconds, with zones the outer one. `systems`: that of each zone, or of all.
-    pub(super) fn step(
-        &mut self,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
-    ) -> Option<f64> {
-        let time = &self.case.time;
-        // the steps of a static stage are counted by themselves; a case that is all static has no others
-        let begin = time.stage.filter(|_| !time.is_static());
-        let duration = time.end.0 - begin.map_or(0.0, |stage| stage.end.0);
-        let (path, size) = self.size();
-        let dt = match size {
-            Size::Fixed(dt) => dt,
-            Size::Courant(courant) => {
-                let outer = bodies.iter().enumerate();
-                let outer = outer.filter(|(body, _)| self.plan.is_outer(*body));
-                courant * crossing(mesh, outer.map(|(_, body)| body))
-            }
-            Size::Critical(fraction) => fraction * self.critical(systems)?,
+/// Refuses laws that the scheme of their contact cannot take, one problem a reason.
+pub(super) fn laws(context: &Context, scheme_of: impl Fn(&str) -> Scheme, problems: &mut Problems) {
+    for (name, contact) in context.case.contact.iter() {
+        let scheme = scheme_of(name);
+        let scheme = scheme.get();
+        // what is wrong with a curve is told where the law is built
+        let Ok(law) = contact.law.law(&Defaults::default()) else {
+            continue;
         };
-        let steps = step_count(duration, dt);
-        if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
-            let problem = Problem::new(path, "the run would never end")
-                .found(format!("{:.3e} steps of {dt:.3e} s", duration / dt));
-            self.problems
-                .push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
-            return None;
+        let level = law.get().level();
+        if scheme.takes(level) {
+            continue;
         }
-        if steps == 0 {
-            let problem = Problem::new("time.end", "the run ends before its first step")
-                .found(format!("{duration:e} s"));
-            self.problems
-                .push(problem.accepted([format!("at least one step of {dt:e} s")]));
-            return None;
-        }
-        Some(dt)
-    }
-
-    /// The step, or the largest, as the case says it, and its key.
-    pub(super) fn size(&self) -> (&'static str, Size) {
-        match self.case.time.step() {
-            Step::Fixed(step) => ("time.step", Size::Fixed(step.0)),
-            Step::Rule(StepRule::Courant(courant)) => ("time.step.courant", Size::Courant(courant)),
-            Step::Rule(StepRule::Critical(part)) => ("time.step.critical", Size::Critical(part)),
-            Step::Rule(StepRule::Adaptive(rules)) => match rules.largest {
-                LargestStep::Fixed(step) => ("time.step.adaptive.largest", Size::Fixed(step.0)),
-                LargestStep::FromMesh(MeshStep::Courant(courant)) => {
-                    ("time.step.adaptive.largest.courant", Size::Courant(courant))
-                }
-                LargestStep::FromMesh(MeshStep::Critical(part)) => {
-                    ("time.step.adaptive.largest.critical", Size::Critical(part))
-                }
-            },
-        }
-    }
-
-    /// The rules of an adaptive step, whose largest is `largest` (s).
-    pub(super) fn adaptive(&mut self, largest: f64) -> Option<Adaptive> {
-        let Step::Rule(StepRule::Adaptive(rules)) = self.case.time.step() else {
-            return None;
-        };
-        let smallest = rules.smallest.map_or(1e-3 * largest, |step| step.0);
-        if !(smallest > 0.0 && smallest <= largest) {
-            let problem = Problem::new(
-                "time.step.adaptive.smallest",
-                "the smallest step must be positive and at most the largest",
-            );
-            self.problems.push(
+        if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
+            let message = "the contact impulses of this scheme act on the velocity at the end of the step: the scheme needs a law in the rate";
+            let problem = Problem::new(format!("contact.{name}.law"), message);
+            problems.push(
                 problem
-                    .found(format!("{smallest:e} s"))
-                    .accepted([format!("at most {largest:e} s")]),
+                    .found(format!("a law in the gap with {}", scheme.name()))
+                    .accepted(["velocity", "compliance", "restitution"]),
+            );
+        } else if level == Level::Gap {
+            let message = "in an explicit scheme the displacement at the end of the step does not depend on the contact force: this law is impossible";
+            let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
+            problems.push(
+                problem
+                    .found(format!("displacement with {}", scheme.name()))
+                    .accepted(["velocity", "damped"]),
+            );
+        } else {
+            let message = "the contact forces of this scheme act on the displacement at the end of the step: the scheme needs the displacement law";
+            let problem = Problem::new(format!("contact.{name}.law"), message);
+            problems.push(
+                problem
+                    .found(format!("another law with {}", scheme.name()))
+                    .accepted(["displacement"]),
             );
         }
-        Some(Adaptive {
-            smallest,
-            closing: match rules.closing {
-                schema::Closing::Cut => Closing::Cut,
-                schema::Closing::Pass => Closing::Pass,
-            },
-            growth: Some(rules.energy_growth),
-            patience: rules.patience,
-        })
     }
+}
 
-    /// Critical step of the explicit schemes among those that take the outer step, in s.
-    fn critical(
-        &mut self,
-        systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
-    ) -> Option<f64> {
-        let zones = &self.plan.zones;
-        match systems() {
-            Ok(systems) => {
-                let outer = systems.iter().enumerate().filter(|(k, system)| {
-                    system.scheme.get().is_explicit()
-                        && zones.get(*k).is_none_or(|zone| zone.substeps == 1)
-                });
-                let steps = outer.map(|(_, system)| system.critical_step());
-                Some(steps.fold(f64::INFINITY, f64::min))
+/// The step in seconds, with zones the outer one. `systems`: that of each zone, or of all.
+pub(super) fn step(
+    context: &Context,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
+    problems: &mut Problems,
+) -> Option<f64> {
+    let time = &context.case.time;
+    // the steps of a static stage are counted by themselves; a case that is all static has no others
+    let begin = time.stage.filter(|_| !time.is_static());
+    let duration = time.end.0 - begin.map_or(0.0, |stage| stage.end.0);
+    let (path, size) = size(context);
+    let dt = match size {
+        Size::Fixed(dt) => dt,
+        Size::Courant(courant) => {
+            let outer = bodies.iter().enumerate();
+            let outer = outer.filter(|(body, _)| context.plan.is_outer(*body));
+            courant * crossing(mesh, outer.map(|(_, body)| body))
+        }
+        Size::Critical(fraction) => fraction * critical(context, systems, problems)?,
+    };
+    let steps = step_count(duration, dt);
+    if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
+        let problem = Problem::new(path, "the run would never end")
+            .found(format!("{:.3e} steps of {dt:.3e} s", duration / dt));
+        problems.push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
+        return None;
+    }
+    if steps == 0 {
+        let problem = Problem::new("time.end", "the run ends before its first step")
+            .found(format!("{duration:e} s"));
+        problems.push(problem.accepted([format!("at least one step of {dt:e} s")]));
+        return None;
+    }
+    Some(dt)
+}
+
+/// The step, or the largest, as the case says it, and its key.
+pub(super) fn size(context: &Context) -> (&'static str, Size) {
+    match context.case.time.step() {
+        Step::Fixed(step) => ("time.step", Size::Fixed(step.0)),
+        Step::Rule(StepRule::Courant(courant)) => ("time.step.courant", Size::Courant(courant)),
+        Step::Rule(StepRule::Critical(part)) => ("time.step.critical", Size::Critical(part)),
+        Step::Rule(StepRule::Adaptive(rules)) => match rules.largest {
+            LargestStep::Fixed(step) => ("time.step.adaptive.largest", Size::Fixed(step.0)),
+            LargestStep::FromMesh(MeshStep::Courant(courant)) => {
+                ("time.step.adaptive.largest.courant", Size::Courant(courant))
             }
-            Err(error) => {
-                self.problems.push(self.refused_zones(&error));
-                None
+            LargestStep::FromMesh(MeshStep::Critical(part)) => {
+                ("time.step.adaptive.largest.critical", Size::Critical(part))
             }
+        },
+    }
+}
+
+/// The rules of an adaptive step, whose largest is `largest` (s).
+pub(super) fn adaptive(
+    context: &Context,
+    largest: f64,
+    problems: &mut Problems,
+) -> Option<Adaptive> {
+    let Step::Rule(StepRule::Adaptive(rules)) = context.case.time.step() else {
+        return None;
+    };
+    let smallest = rules.smallest.map_or(1e-3 * largest, |step| step.0);
+    if !(smallest > 0.0 && smallest <= largest) {
+        let problem = Problem::new(
+            "time.step.adaptive.smallest",
+            "the smallest step must be positive and at most the largest",
+        );
+        problems.push(
+            problem
+                .found(format!("{smallest:e} s"))
+                .accepted([format!("at most {largest:e} s")]),
+        );
+    }
+    Some(Adaptive {
+        smallest,
+        closing: match rules.closing {
+            schema::Closing::Cut => Closing::Cut,
+            schema::Closing::Pass => Closing::Pass,
+        },
+        growth: Some(rules.energy_growth),
+        patience: rules.patience,
+    })
+}
+
+/// Critical step of the explicit schemes among those that take the outer step, in s.
+fn critical(
+    context: &Context,
+    systems: impl FnOnce() -> Result<Vec<Arc<System>>, Error>,
+    problems: &mut Problems,
+) -> Option<f64> {
+    let zones = &context.plan.zones;
+    match systems() {
+        Ok(systems) => {
+            let outer = systems.iter().enumerate().filter(|(k, system)| {
+                system.scheme.get().is_explicit()
+                    && zones.get(*k).is_none_or(|zone| zone.substeps == 1)
+            });
+            let steps = outer.map(|(_, system)| system.critical_step());
+            Some(steps.fold(f64::INFINITY, f64::min))
+        }
+        Err(error) => {
+            problems.push(refused::refused_zones(context, &error));
+            None
         }
     }
 }

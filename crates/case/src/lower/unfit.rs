@@ -4,8 +4,9 @@ use carom_arlequin::{Error, Rows, Warning};
 use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh};
 
-use super::Builder;
+use super::context::Context;
 use super::held::Held;
+use super::problems::{Problems, plural};
 use crate::error::Problem;
 use crate::offenders::Offenders;
 
@@ -15,205 +16,215 @@ const LEAST_RANK: f64 = 1e-8;
 /// Nodes named in one message; the others are counted.
 const LISTED: usize = 3;
 
-impl Builder<'_> {
-    /// Refuses rows that are dependent on the unknowns that are free.
-    pub(super) fn full_rank(
-        &mut self,
-        path: &str,
-        mesh: &Mesh,
-        bodies: &[ModelBody],
-        rows: &Rows,
-        held: &Held,
-    ) {
-        let rank = match rows.rank(|node, component| held.has(node, component)) {
-            Ok(rank) => rank,
-            Err(error) => {
-                self.problems.push(Problem::new(path, error.to_string()));
-                return;
-            }
-        };
-        if rank.smallest >= LEAST_RANK {
+/// Refuses rows that are dependent on the unknowns that are free.
+pub(super) fn full_rank(
+    context: &Context,
+    path: &str,
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    rows: &Rows,
+    held: &Held,
+    problems: &mut Problems,
+) {
+    let rank = match rows.rank(|node, component| held.has(node, component)) {
+        Ok(rank) => rank,
+        Err(error) => {
+            problems.push(Problem::new(path, error.to_string()));
             return;
         }
-        let (node, component) = rank.weakest;
-        let at = place(mesh, node);
-        let message =
-            "the mediator has functions that vanish on both bodies: their rows are dependent";
-        let problem = Problem::new(format!("{path}.mediator"), message)
-            .found(format!(
-                "a least eigenvalue of {:.1e} of the scaled rows, most of it of node {node}, {at}, in {}",
-                rank.smallest,
-                axis(mesh, component)
-            ))
-            .accepted([
-                format!("at least {LEAST_RANK:e}"),
-                "mediator = \"coarser\"".to_string(),
-                "supports that end outside the overlap".to_string(),
-            ]);
-        let cells = bodies.iter().flat_map(|body| &body.spec.cells);
-        let around = cells.filter(|&&cell| mesh.element_nodes(cell).contains(&node));
-        let around: Vec<ElementId> = around.copied().collect();
-        let name = path.rsplit('.').next().unwrap_or(path);
-        let problem = self.shown(problem, (name, mesh), &around);
-        self.problems.push(problem);
+    };
+    if rank.smallest >= LEAST_RANK {
+        return;
     }
+    let (node, component) = rank.weakest;
+    let at = place(mesh, node);
+    let message = "the mediator has functions that vanish on both bodies: their rows are dependent";
+    let problem = Problem::new(format!("{path}.mediator"), message)
+        .found(format!(
+            "a least eigenvalue of {:.1e} of the scaled rows, most of it of node {node}, {at}, in {}",
+            rank.smallest,
+            axis(mesh, component)
+        ))
+        .accepted([
+            format!("at least {LEAST_RANK:e}"),
+            "mediator = \"coarser\"".to_string(),
+            "supports that end outside the overlap".to_string(),
+        ]);
+    let cells = bodies.iter().flat_map(|body| &body.spec.cells);
+    let around = cells.filter(|&&cell| mesh.element_nodes(cell).contains(&node));
+    let around: Vec<ElementId> = around.copied().collect();
+    let name = path.rsplit('.').next().unwrap_or(path);
+    let problem = shown(context, problem, (name, mesh), &around);
+    problems.push(problem);
+}
 
-    /// The problem behind an error of an overlap. `all`: cells of both bodies.
-    pub(super) fn unfit(
-        &self,
-        (path, name): (&str, &str),
-        mesh: &Mesh,
-        error: &Error,
-        all: &[ElementId],
-    ) -> Problem {
-        let (key, cells, accepted): (&str, &[ElementId], &str) = match error {
-            Error::NotCovered { cells, .. } => {
-                (".overlap", cells, "a group of cells that both bodies cover")
-            }
-            Error::EndsOutside { cells } => (
-                ".overlap",
-                cells,
-                "an overlap up to the end of the inner body",
-            ),
-            Error::Thin { cells, .. } => (
-                ".overlap",
-                cells,
-                "at least one cell of the outer body, better two to four",
-            ),
-            Error::Bent { cells } => (
-                ".overlap",
-                cells,
-                "a beam with a straight axis in the solid",
-            ),
-            Error::SolidEndsOutside { cells } => {
-                (".overlap", cells, "an overlap up to the end of the solid")
-            }
-            Error::Short { cells, .. } => (
-                ".overlap",
-                cells,
-                "at least one cell of the coarser body, better two to four",
-            ),
-            Error::Section { cells, .. } => (
-                ".overlap",
-                cells,
-                "a solid whose sections are those of the beam, about the same axis",
-            ),
-            Error::Thickness { cells, .. } => (
-                ".overlap",
-                cells,
-                "a solid from one face of the shell to the other, about the same middle surface",
-            ),
-            Error::Fold { cells } => (
-                ".overlap",
-                cells,
-                "a shell without folds in the overlap, its normals all to the same side",
-            ),
-            Error::FoldsOver { cell } => (
-                "",
-                std::slice::from_ref(cell),
-                "flatter cells, or a thinner shell",
-            ),
-            Error::Empty => (".overlap", all, "a place where both bodies are"),
-            Error::NoEnd { .. } => (
-                ".overlap",
-                all,
-                "a beam or a shell that ends in the solid, or a group or a box that says how far it goes",
-            ),
-            Error::NoBorder { .. } => (".weights", all, "an overlap in which each body ends"),
-            Error::Range { .. } | Error::Reflects { .. } => (".weights", &[], "\"linear\""),
-            Error::NoMediator => (".mediator", all, "\"coarser\""),
-            Error::Dimension { cell, .. } | Error::InverseMap { cell } => (
-                "",
-                std::slice::from_ref(cell),
-                "sound cells that fill the space of the mesh",
-            ),
-            Error::Kind { cell, .. } => (
-                "",
-                std::slice::from_ref(cell),
-                "bodies of linear cells, pyramids and wedges apart",
-            ),
-            Error::SharedNode { .. } => ("", &[], "bodies with meshes of their own"),
-            Error::NoCells { .. } => ("", &[], "bodies with cells"),
-            Error::Defect(_)
-            | Error::NoInterface { .. }
-            | Error::Ambiguous { .. }
-            | Error::FacesOnLine { .. }
-            | Error::FaceOfEdge { .. }
-            | Error::EdgeWithoutFace { .. }
-            | Error::Algebra(_) => ("", &[], "two sound bodies"),
-        };
-        let problem = Problem::new(format!("{path}{key}"), error.to_string()).accepted([accepted]);
-        self.shown(problem, (name, mesh), cells)
-    }
-
-    /// A problem with the cells that it is about, if there are any.
-    pub(super) fn shown(
-        &self,
-        problem: Problem,
-        (name, mesh): (&str, &Mesh),
-        cells: &[ElementId],
-    ) -> Problem {
-        if cells.is_empty() {
-            return problem;
+/// The problem behind an error of an overlap. `all`: cells of both bodies.
+pub(super) fn unfit(
+    context: &Context,
+    (path, name): (&str, &str),
+    mesh: &Mesh,
+    error: &Error,
+    all: &[ElementId],
+) -> Problem {
+    let (key, cells, accepted): (&str, &[ElementId], &str) = match error {
+        Error::NotCovered { cells, .. } => {
+            (".overlap", cells, "a group of cells that both bodies cover")
         }
-        let offenders = Offenders::new(format!("overlap-{name}"), mesh, cells);
-        let path = offenders.path(&self.file);
-        let note = format!(
-            "`carom check --cells` writes the cells to {}",
-            path.display()
-        );
-        Problem {
-            offenders: Some(offenders),
-            ..problem.note(note)
+        Error::EndsOutside { cells } => (
+            ".overlap",
+            cells,
+            "an overlap up to the end of the inner body",
+        ),
+        Error::Thin { cells, .. } => (
+            ".overlap",
+            cells,
+            "at least one cell of the outer body, better two to four",
+        ),
+        Error::Bent { cells } => (
+            ".overlap",
+            cells,
+            "a beam with a straight axis in the solid",
+        ),
+        Error::SolidEndsOutside { cells } => {
+            (".overlap", cells, "an overlap up to the end of the solid")
         }
-    }
+        Error::Short { cells, .. } => (
+            ".overlap",
+            cells,
+            "at least one cell of the coarser body, better two to four",
+        ),
+        Error::Section { cells, .. } => (
+            ".overlap",
+            cells,
+            "a solid whose sections are those of the beam, about the same axis",
+        ),
+        Error::Thickness { cells, .. } => (
+            ".overlap",
+            cells,
+            "a solid from one face of the shell to the other, about the same middle surface",
+        ),
+        Error::Fold { cells } => (
+            ".overlap",
+            cells,
+            "a shell without folds in the overlap, its normals all to the same side",
+        ),
+        Error::FoldsOver { cell } => (
+            "",
+            std::slice::from_ref(cell),
+            "flatter cells, or a thinner shell",
+        ),
+        Error::Empty => (".overlap", all, "a place where both bodies are"),
+        Error::NoEnd { .. } => (
+            ".overlap",
+            all,
+            "a beam or a shell that ends in the solid, or a group or a box that says how far it goes",
+        ),
+        Error::NoBorder { .. } => (".weights", all, "an overlap in which each body ends"),
+        Error::Range { .. } | Error::Reflects { .. } => (".weights", &[], "\"linear\""),
+        Error::NoMediator => (".mediator", all, "\"coarser\""),
+        Error::Dimension { cell, .. } | Error::InverseMap { cell } => (
+            "",
+            std::slice::from_ref(cell),
+            "sound cells that fill the space of the mesh",
+        ),
+        Error::Kind { cell, .. } => (
+            "",
+            std::slice::from_ref(cell),
+            "bodies of linear cells, pyramids and wedges apart",
+        ),
+        Error::SharedNode { .. } => ("", &[], "bodies with meshes of their own"),
+        Error::NoCells { .. } => ("", &[], "bodies with cells"),
+        Error::Defect(_)
+        | Error::NoInterface { .. }
+        | Error::Ambiguous { .. }
+        | Error::FacesOnLine { .. }
+        | Error::FaceOfEdge { .. }
+        | Error::EdgeWithoutFace { .. }
+        | Error::Algebra(_) => ("", &[], "two sound bodies"),
+    };
+    let problem = Problem::new(format!("{path}{key}"), error.to_string()).accepted([accepted]);
+    shown(context, problem, (name, mesh), cells)
+}
 
-    /// Warns of rows, named by node and direction.
-    pub(super) fn name_rows(&mut self, joint: &str, mesh: &Mesh, rows: &[(u32, u32)], what: &str) {
-        let name = |&(node, component): &(u32, u32)| {
-            format!(
-                "{} of node {node}, {}",
-                axis(mesh, component),
-                place(mesh, node)
-            )
-        };
-        self.name_all(joint, rows.iter().map(name), "constraint", what);
+/// A problem with the cells that it is about, if there are any.
+pub(super) fn shown(
+    context: &Context,
+    problem: Problem,
+    (name, mesh): (&str, &Mesh),
+    cells: &[ElementId],
+) -> Problem {
+    if cells.is_empty() {
+        return problem;
     }
+    let offenders = Offenders::new(format!("overlap-{name}"), mesh, cells);
+    let path = offenders.path(&context.file);
+    let note = format!(
+        "`carom check --cells` writes the cells to {}",
+        path.display()
+    );
+    Problem {
+        offenders: Some(offenders),
+        ..problem.note(note)
+    }
+}
 
-    /// Warns of mediator functions, named by their node.
-    pub(super) fn name_nodes(
-        &mut self,
-        joint: &str,
-        mesh: &Mesh,
-        nodes: &[(u32, u32)],
-        what: &str,
-    ) {
-        let name = |&(node, _): &(u32, u32)| format!("node {node}, {}", place(mesh, node));
-        self.name_all(joint, nodes.iter().map(name), "mediator function", what);
-    }
+/// Warns of rows, named by node and direction.
+pub(super) fn name_rows(
+    joint: &str,
+    mesh: &Mesh,
+    rows: &[(u32, u32)],
+    what: &str,
+    problems: &mut Problems,
+) {
+    let name = |&(node, component): &(u32, u32)| {
+        format!(
+            "{} of node {node}, {}",
+            axis(mesh, component),
+            place(mesh, node)
+        )
+    };
+    name_all(joint, rows.iter().map(name), "constraint", what, problems);
+}
 
-    fn name_all(
-        &mut self,
-        joint: &str,
-        names: impl ExactSizeIterator<Item = String>,
-        noun: &str,
-        what: &str,
-    ) {
-        let count = names.len();
-        if count == 0 {
-            return;
-        }
-        let first: Vec<String> = names.take(LISTED).collect();
-        let more = match count > LISTED {
-            true => format!("; and {} more", count - LISTED),
-            false => String::new(),
-        };
-        self.warnings.push(format!(
-            "joint `{joint}`: {} {what} ({}{more})",
-            super::plural(count, noun),
-            first.join("; ")
-        ));
+/// Warns of mediator functions, named by their node.
+pub(super) fn name_nodes(
+    joint: &str,
+    mesh: &Mesh,
+    nodes: &[(u32, u32)],
+    what: &str,
+    problems: &mut Problems,
+) {
+    let name = |&(node, _): &(u32, u32)| format!("node {node}, {}", place(mesh, node));
+    name_all(
+        joint,
+        nodes.iter().map(name),
+        "mediator function",
+        what,
+        problems,
+    );
+}
+
+fn name_all(
+    joint: &str,
+    names: impl ExactSizeIterator<Item = String>,
+    noun: &str,
+    what: &str,
+    problems: &mut Problems,
+) {
+    let count = names.len();
+    if count == 0 {
+        return;
     }
+    let first: Vec<String> = names.take(LISTED).collect();
+    let more = match count > LISTED {
+        true => format!("; and {} more", count - LISTED),
+        false => String::new(),
+    };
+    problems.warn(format!(
+        "joint `{joint}`: {} {what} ({}{more})",
+        plural(count, noun),
+        first.join("; ")
+    ));
 }
 
 /// What is doubtful about weights.

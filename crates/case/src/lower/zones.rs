@@ -6,250 +6,241 @@ use carom_dynamics::{ModelContact, ModelTarget};
 use carom_mesh::ElementId;
 use carom_zones::LinkKind;
 
-use super::Builder;
+use super::context::Context;
+use super::lookup;
 use super::plan::{Plan, Zone};
+use super::problems::Problems;
+use super::time;
 use crate::error::Problem;
-use crate::schema::{self, InnerSteps, Link, Substeps};
+use crate::schema::{self, Case, InnerSteps, Link, Substeps};
 
-impl Builder<'_> {
-    /// Resolves the zones; refuses what can be told without the mesh.
-    pub(super) fn plan_zones(&mut self) -> Plan {
-        let mut zones = self.zones();
-        self.substeps(&mut zones);
-        let kind = self.link_kind(zones.iter().any(|zone| zone.substeps > 1));
-        let plan = Plan { zones, kind };
-        self.joints(&plan);
-        if !plan.zones.is_empty()
-            && self.case.time.scheme.is_some()
-            && self.case.zone.iter().all(|(_, zone)| zone.scheme.is_some())
-        {
-            self.warnings
-                .push("time.scheme: every zone has its own scheme, so this one is not used".into());
-        }
-        plan
+/// Resolves the zones; refuses what can be told without the mesh.
+pub(super) fn lower(case: &Case, problems: &mut Problems) -> Plan {
+    let mut zones = zones(case, problems);
+    substeps(case, &mut zones, problems);
+    let kind = link_kind(case, zones.iter().any(|zone| zone.substeps > 1), problems);
+    let plan = Plan { zones, kind };
+    joints(case, &plan, problems);
+    if !plan.zones.is_empty()
+        && case.time.scheme.is_some()
+        && case.zone.iter().all(|(_, zone)| zone.scheme.is_some())
+    {
+        problems.warn("time.scheme: every zone has its own scheme, so this one is not used".into());
     }
+    plan
+}
 
-    /// The zones with their bodies; each body in one of them.
-    fn zones(&mut self) -> Vec<Zone> {
-        let case = self.case;
-        let names: Vec<&str> = case.body.names().collect();
-        let mut owner: Vec<Option<&str>> = vec![None; names.len()];
-        let mut zones = Vec::new();
-        for (name, given) in case.zone.iter() {
-            let mut bodies = Vec::new();
-            for (k, body) in given.bodies.iter().enumerate() {
-                let path = format!("zone.{name}.bodies[{k}]");
-                let Some(number) = names.iter().position(|one| one == body) else {
-                    let problem = Problem::new(path, "no body of this name");
-                    self.problems
-                        .push(problem.unknown(body, names.iter().copied()));
-                    continue;
-                };
-                if let Some(other) = owner[number] {
-                    let message = format!("this body is in the zone `{other}` too");
-                    let problem = Problem::new(path, message).found(body);
-                    self.problems.push(problem.accepted(["a body of one zone"]));
-                    continue;
-                }
-                owner[number] = Some(name);
-                bodies.push(number);
-            }
-            zones.push(Zone {
-                name: name.to_string(),
-                bodies,
-                scheme: given.scheme.unwrap_or(case.time.scheme()),
-                scheme_path: match given.scheme {
-                    Some(_) => format!("zone.{name}.scheme"),
-                    None => "time.scheme".to_string(),
-                },
-                substeps: 1,
-                far: 1,
-            });
-        }
-        if !zones.is_empty() {
-            for (body, _) in names.iter().zip(&owner).filter(|(_, zone)| zone.is_none()) {
-                let problem = Problem::new(format!("body.{body}"), "this body is in no zone");
-                let zones = zones.iter().map(|zone| zone.name.clone());
-                self.problems.push(problem.accepted(zones));
-            }
-        }
-        zones
-    }
-
-    /// Inner steps of each zone: one of them takes the outer step, the others all the same number.
-    fn substeps(&mut self, zones: &mut [Zone]) {
-        let case = self.case;
-        let mut given: Vec<(String, &str, [u32; 2])> = Vec::new();
-        for (name, zone) in case.zone.iter() {
-            let path = format!("zone.{name}.substeps");
-            match &zone.substeps {
-                None => {}
-                Some(Substeps::Own(count)) => given.push((path, name, [count.0; 2])),
-                Some(Substeps::Of(counts)) => {
-                    for (inner, count) in counts.iter() {
-                        let steps = match count {
-                            InnerSteps::Always(count) => [count.0; 2],
-                            InnerSteps::Choice(choice) => [choice.near.0, choice.far.0],
-                        };
-                        given.push((format!("{path}.{inner}"), inner, steps));
-                    }
-                }
-            }
-        }
-        let names: Vec<&str> = case.zone.names().collect();
-        let mut said = vec![false; zones.len()];
-        let mut many = None;
-        for (path, name, [count, far]) in given {
-            let Some(zone) = names.iter().position(|one| *one == name) else {
-                let problem = Problem::new(path, "no zone of this name");
-                self.problems
-                    .push(problem.unknown(name, names.iter().copied()));
+/// The zones with their bodies; each body in one of them.
+fn zones(case: &Case, problems: &mut Problems) -> Vec<Zone> {
+    let names: Vec<&str> = case.body.names().collect();
+    let mut owner: Vec<Option<&str>> = vec![None; names.len()];
+    let mut zones = Vec::new();
+    for (name, given) in case.zone.iter() {
+        let mut bodies = Vec::new();
+        for (k, body) in given.bodies.iter().enumerate() {
+            let path = format!("zone.{name}.bodies[{k}]");
+            let Some(number) = names.iter().position(|one| one == body) else {
+                let problem = Problem::new(path, "no body of this name");
+                problems.push(problem.unknown(body, names.iter().copied()));
                 continue;
             };
-            if std::mem::replace(&mut said[zone], true) {
-                let message = format!("the steps of the zone `{name}` are given twice");
-                self.problems.push(Problem::new(path, message).found(count));
+            if let Some(other) = owner[number] {
+                let message = format!("this body is in the zone `{other}` too");
+                let problem = Problem::new(path, message).found(body);
+                problems.push(problem.accepted(["a body of one zone"]));
                 continue;
             }
-            (zones[zone].substeps, zones[zone].far) = (count, far);
-            if count > 1 && *many.get_or_insert(count) != count {
-                let message =
-                    "all zones with inner steps must have the same number of them per outer step";
-                let accepted = many.map(|many| format!("1 or {many}"));
-                self.problems
-                    .push(Problem::new(path, message).found(count).accepted(accepted));
-            }
+            owner[number] = Some(name);
+            bodies.push(number);
         }
-        if !zones.is_empty() && zones.iter().all(|zone| zone.substeps > 1) {
-            let problem = Problem::new("zone", "no zone takes the outer step, `time.step`");
-            self.problems
-                .push(problem.accepted(["one zone at least with substeps = 1"]));
+        zones.push(Zone {
+            name: name.to_string(),
+            bodies,
+            scheme: given.scheme.unwrap_or(case.time.scheme()),
+            scheme_path: match given.scheme {
+                Some(_) => format!("zone.{name}.scheme"),
+                None => "time.scheme".to_string(),
+            },
+            substeps: 1,
+            far: 1,
+        });
+    }
+    if !zones.is_empty() {
+        for (body, _) in names.iter().zip(&owner).filter(|(_, zone)| zone.is_none()) {
+            let problem = Problem::new(format!("body.{body}"), "this body is in no zone");
+            let zones = zones.iter().map(|zone| zone.name.clone());
+            problems.push(problem.accepted(zones));
         }
     }
+    zones
+}
 
-    /// The link of all joints: the one given, or that which suits the steps.
-    fn link_kind(&mut self, inner_steps: bool) -> LinkKind {
-        let overlaps = self.case.arlequin.iter();
-        let overlaps = overlaps.map(|(name, joint)| (format!("arlequin.{name}"), joint.link));
-        let borders = self.case.interface.iter();
-        let borders = borders.map(|(name, joint)| (format!("interface.{name}"), joint.link));
-        let given: Vec<(String, Link)> = overlaps
-            .chain(borders)
-            .filter_map(|(path, link)| Some((format!("{path}.link"), link?)))
+/// Inner steps of each zone: one of them takes the outer step, the others all the same number.
+fn substeps(case: &Case, zones: &mut [Zone], problems: &mut Problems) {
+    let mut given: Vec<(String, &str, [u32; 2])> = Vec::new();
+    for (name, zone) in case.zone.iter() {
+        let path = format!("zone.{name}.substeps");
+        match &zone.substeps {
+            None => {}
+            Some(Substeps::Own(count)) => given.push((path, name, [count.0; 2])),
+            Some(Substeps::Of(counts)) => {
+                for (inner, count) in counts.iter() {
+                    let steps = match count {
+                        InnerSteps::Always(count) => [count.0; 2],
+                        InnerSteps::Choice(choice) => [choice.near.0, choice.far.0],
+                    };
+                    given.push((format!("{path}.{inner}"), inner, steps));
+                }
+            }
+        }
+    }
+    let names: Vec<&str> = case.zone.names().collect();
+    let mut said = vec![false; zones.len()];
+    let mut many = None;
+    for (path, name, [count, far]) in given {
+        let Some(zone) = names.iter().position(|one| *one == name) else {
+            let problem = Problem::new(path, "no zone of this name");
+            problems.push(problem.unknown(name, names.iter().copied()));
+            continue;
+        };
+        if std::mem::replace(&mut said[zone], true) {
+            let message = format!("the steps of the zone `{name}` are given twice");
+            problems.push(Problem::new(path, message).found(count));
+            continue;
+        }
+        (zones[zone].substeps, zones[zone].far) = (count, far);
+        if count > 1 && *many.get_or_insert(count) != count {
+            let message =
+                "all zones with inner steps must have the same number of them per outer step";
+            let accepted = many.map(|many| format!("1 or {many}"));
+            problems.push(Problem::new(path, message).found(count).accepted(accepted));
+        }
+    }
+    if !zones.is_empty() && zones.iter().all(|zone| zone.substeps > 1) {
+        let problem = Problem::new("zone", "no zone takes the outer step, `time.step`");
+        problems.push(problem.accepted(["one zone at least with substeps = 1"]));
+    }
+}
+
+/// The link of all joints: the one given, or that which suits the steps.
+fn link_kind(case: &Case, inner_steps: bool, problems: &mut Problems) -> LinkKind {
+    let overlaps = case.arlequin.iter();
+    let overlaps = overlaps.map(|(name, joint)| (format!("arlequin.{name}"), joint.link));
+    let borders = case.interface.iter();
+    let borders = borders.map(|(name, joint)| (format!("interface.{name}"), joint.link));
+    let given: Vec<(String, Link)> = overlaps
+        .chain(borders)
+        .filter_map(|(path, link)| Some((format!("{path}.link"), link?)))
+        .collect();
+    let text = |link: Link| match link {
+        Link::GravouilCombescure => "gravouil-combescure",
+        Link::PrakashHjelmstad => "prakash-hjelmstad",
+    };
+    let Some((first, link)) = given.first() else {
+        return match inner_steps {
+            false => LinkKind::GravouilCombescure,
+            true => LinkKind::PrakashHjelmstad,
+        };
+    };
+    for (path, other) in given.iter().filter(|(_, other)| other != link) {
+        let message = format!("all joints of a case have the same link, and `{first}` differs");
+        let problem = Problem::new(path, message).found(text(*other));
+        problems.push(problem.accepted([text(*link)]));
+    }
+    match link {
+        Link::GravouilCombescure => LinkKind::GravouilCombescure,
+        Link::PrakashHjelmstad => LinkKind::PrakashHjelmstad,
+    }
+}
+
+/// Refuses joints of unknown bodies, and of one zone.
+fn joints(case: &Case, plan: &Plan, problems: &mut Problems) {
+    let overlaps = case.arlequin.iter();
+    let overlaps = overlaps.map(|(n, j)| (format!("arlequin.{n}"), [&j.inner, &j.outer]));
+    let borders = case.interface.iter();
+    let borders = borders.map(|(n, j)| (format!("interface.{n}"), [&j.inner, &j.outer]));
+    for (name, _) in case.interface.iter() {
+        if case.arlequin.get(name).is_some() {
+            let problem = Problem::new(
+                format!("interface.{name}"),
+                "an overlap has this name too, and results name both by it",
+            );
+            problems.push(problem.accepted(["another name"]));
+        }
+    }
+    for (path, bodies) in overlaps.chain(borders) {
+        let sides = ["inner", "outer"].iter().zip(bodies);
+        let found: Vec<Option<usize>> = sides
+            .map(|(key, body)| lookup::body(case, &format!("{path}.{key}"), body, problems))
             .collect();
-        let text = |link: Link| match link {
-            Link::GravouilCombescure => "gravouil-combescure",
-            Link::PrakashHjelmstad => "prakash-hjelmstad",
+        let [Some(inner), Some(outer)] = found[..] else {
+            continue;
         };
-        let Some((first, link)) = given.first() else {
-            return match inner_steps {
-                false => LinkKind::GravouilCombescure,
-                true => LinkKind::PrakashHjelmstad,
-            };
+        if plan.zones.is_empty() {
+            let problem = Problem::new(path, "this joins two zones, and the case has none");
+            problems.push(problem.accepted(["a table [zone.<name>] for each of them"]));
+            continue;
+        }
+        let (Some(one), Some(other)) = (plan.zone_of(inner), plan.zone_of(outer)) else {
+            continue;
         };
-        for (path, other) in given.iter().filter(|(_, other)| other != link) {
-            let message = format!("all joints of a case have the same link, and `{first}` differs");
-            let problem = Problem::new(path, message).found(text(*other));
-            self.problems.push(problem.accepted([text(*link)]));
-        }
-        match link {
-            Link::GravouilCombescure => LinkKind::GravouilCombescure,
-            Link::PrakashHjelmstad => LinkKind::PrakashHjelmstad,
+        if one == other {
+            let message = format!(
+                "both bodies are in the zone `{}`: only zones are joined",
+                plan.zones[one].name
+            );
+            let problem = Problem::new(format!("{path}.outer"), message).found(bodies[1]);
+            problems.push(problem.accepted(["a body of another zone"]));
         }
     }
+}
 
-    /// Refuses joints of unknown bodies, and of one zone.
-    fn joints(&mut self, plan: &Plan) {
-        let case = self.case;
-        let overlaps = case.arlequin.iter();
-        let overlaps = overlaps.map(|(n, j)| (format!("arlequin.{n}"), [&j.inner, &j.outer]));
-        let borders = case.interface.iter();
-        let borders = borders.map(|(n, j)| (format!("interface.{n}"), [&j.inner, &j.outer]));
-        for (name, _) in case.interface.iter() {
-            if case.arlequin.get(name).is_some() {
-                let problem = Problem::new(
-                    format!("interface.{name}"),
-                    "an overlap has this name too, and results name both by it",
-                );
-                self.problems.push(problem.accepted(["another name"]));
-            }
-        }
-        for (path, bodies) in overlaps.chain(borders) {
-            let sides = ["inner", "outer"].iter().zip(bodies);
-            let found: Vec<Option<usize>> = sides
-                .map(|(key, body)| self.body(&format!("{path}.{key}"), body))
-                .collect();
-            let [Some(inner), Some(outer)] = found[..] else {
-                continue;
-            };
-            if plan.zones.is_empty() {
-                let problem = Problem::new(path, "this joins two zones, and the case has none");
-                self.problems
-                    .push(problem.accepted(["a table [zone.<name>] for each of them"]));
-                continue;
-            }
-            let (Some(one), Some(other)) = (plan.zone_of(inner), plan.zone_of(outer)) else {
-                continue;
-            };
-            if one == other {
-                let message = format!(
-                    "both bodies are in the zone `{}`: only zones are joined",
-                    plan.zones[one].name
-                );
-                let problem = Problem::new(format!("{path}.outer"), message).found(bodies[1]);
-                self.problems
-                    .push(problem.accepted(["a body of another zone"]));
-            }
-        }
-    }
+/// The scheme that moves a cell.
+pub(super) fn scheme_at(
+    context: &Context,
+    cell: Option<ElementId>,
+    of: &[Vec<ElementId>],
+) -> schema::Scheme {
+    let body = cell.and_then(|cell| body_of(cell, of));
+    let zone = body.and_then(|body| context.plan.zone_of(body));
+    zone.map_or(context.case.time.scheme(), |zone| {
+        context.plan.zones[zone].scheme
+    })
+}
 
-    /// The number of the body called `name`, or a problem at `path`.
-    pub(super) fn body(&mut self, path: &str, name: &str) -> Option<usize> {
-        let names: Vec<&str> = self.case.body.names().collect();
-        let number = names.iter().position(|one| *one == name);
-        if number.is_none() {
-            let problem = Problem::new(path, "no body of this name");
-            self.problems.push(problem.unknown(name, names));
-        }
-        number
+/// Refuses laws that the schemes of zones cannot take.
+pub(super) fn laws(
+    context: &Context,
+    contacts: &[ModelContact],
+    of: &[Vec<ElementId>],
+    problems: &mut Problems,
+) {
+    if context.plan.zones.is_empty() {
+        return;
     }
-
-    /// The scheme that moves a cell.
-    pub(super) fn scheme_at(
-        &self,
-        cell: Option<ElementId>,
-        of: &[Vec<ElementId>],
-    ) -> schema::Scheme {
-        let body = cell.and_then(|cell| body_of(cell, of));
-        let zone = body.and_then(|body| self.plan.zone_of(body));
-        zone.map_or(self.case.time.scheme(), |zone| self.plan.zones[zone].scheme)
-    }
-
-    /// Refuses laws that the schemes of zones cannot take.
-    pub(super) fn zones_of_contacts(&mut self, contacts: &[ModelContact], of: &[Vec<ElementId>]) {
-        if self.plan.zones.is_empty() {
-            return;
+    let mut schemes: BTreeMap<&str, schema::Scheme> = BTreeMap::new();
+    for contact in contacts {
+        let primary = match &contact.primary {
+            ModelTarget::Surface(surface) => &surface.faces[..],
+            ModelTarget::Rigid(_) => &[],
+        };
+        let faces = contact.secondary.faces.iter().chain(primary);
+        let mut zones: Vec<usize> = faces
+            .filter_map(|face| context.plan.zone_of(body_of(face.parent, of)?))
+            .collect();
+        zones.sort_unstable();
+        zones.dedup();
+        // of several the one that comes first
+        if let Some(&zone) = zones.first() {
+            schemes.insert(&contact.name, context.plan.zones[zone].scheme);
         }
-        let mut schemes: BTreeMap<&str, schema::Scheme> = BTreeMap::new();
-        for contact in contacts {
-            let primary = match &contact.primary {
-                ModelTarget::Surface(surface) => &surface.faces[..],
-                ModelTarget::Rigid(_) => &[],
-            };
-            let faces = contact.secondary.faces.iter().chain(primary);
-            let mut zones: Vec<usize> = faces
-                .filter_map(|face| self.plan.zone_of(body_of(face.parent, of)?))
-                .collect();
-            zones.sort_unstable();
-            zones.dedup();
-            // of several the one that comes first
-            if let Some(&zone) = zones.first() {
-                schemes.insert(&contact.name, self.plan.zones[zone].scheme);
-            }
-        }
-        let default = self.case.time.scheme();
-        self.laws(|name| schemes.get(name).copied().unwrap_or(default));
     }
+    let default = context.case.time.scheme();
+    time::laws(
+        context,
+        |name| schemes.get(name).copied().unwrap_or(default),
+        problems,
+    );
 }
 
 /// The body of a cell.
