@@ -1,18 +1,16 @@
 //! Overlaps and borders between zones: cells that fall away, weights, rows, and what is wrong with them.
 
-use carom_arlequin::{Bracket, Coupling, Error, Mediator, Model, Models, Overlap, Rows};
+use carom_arlequin::{Bracket, Coupling, Mediator, Model, Models, Overlap, Rows};
 use carom_bodies::Kinematics;
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Support};
 use carom_mesh::{ElementId, Mesh};
 
 use super::context::Context;
 use super::held::Held;
-use super::joints::{self, BuiltOverlap, FEW_LAYERS, Joints};
-use super::lookup;
+use super::joints::{self, BuiltOverlap, FEW_LAYERS, Joint, Joints, is_thin};
 use super::problems::{Problems, plural};
-use super::thin_overlaps;
-use super::ties;
 use super::unfit::{self, doubt};
+use super::{thin_overlaps, ties};
 use crate::error::Problem;
 use crate::schema::{self, BracketLength, BracketWith};
 
@@ -24,120 +22,84 @@ pub(super) fn lower(
     supports: &[Support],
     problems: &mut Problems,
 ) -> Joints {
-    let case = context.case;
     let held = Held::new(mesh, supports);
     let mut joints = Joints::default();
     let mut before: Vec<Rows> = Vec::new();
-    for (name, given) in case.arlequin.iter() {
-        if let Some(rows) = overlap(
+    for (name, given) in context.case.arlequin.iter() {
+        let path = format!("arlequin.{name}");
+        let names = [&given.inner[..], &given.outer];
+        let Some(numbers) = Joint::bodies(context, &path, names, problems) else {
+            continue;
+        };
+        let joint = Joint {
             context,
-            (name, given),
             mesh,
-            bodies,
-            &held,
-            &mut joints,
-            problems,
-        ) {
-            let rows = apart_from(name, rows, &before, problems);
-            unfit::full_rank(
-                context,
-                &format!("arlequin.{name}"),
-                mesh,
-                bodies,
-                &rows,
-                &held,
-                problems,
-            );
-            joints::link(
-                context,
-                name,
-                (&given.inner, &given.outer),
-                rows.clone(),
-                &mut joints,
-            );
-            before.push(rows);
-        }
+            held: &held,
+            name,
+            path,
+            bodies: numbers,
+        };
+        let Some(rows) = overlap(&joint, given, bodies, &mut joints, problems) else {
+            continue;
+        };
+        let rows = apart_from(name, rows, &before, problems);
+        unfit::full_rank(&joint, bodies, &rows, problems);
+        joints.links.extend(joint.link(rows.clone()));
+        before.push(rows);
     }
-    ties::borders(context, mesh, bodies, &held, &mut joints, problems);
+    let borders = ties::borders(context, mesh, bodies, &held, problems);
+    joints.links.extend(borders);
     joints
 }
 
 /// One overlap: its rows, with cells and weights of the two bodies changed.
 fn overlap(
-    context: &Context,
-    (name, given): (&str, &schema::Arlequin),
-    mesh: &Mesh,
+    joint: &Joint,
+    given: &schema::Arlequin,
     bodies: &mut [ModelBody],
-    held: &Held,
     joints: &mut Joints,
     problems: &mut Problems,
 ) -> Option<Rows> {
-    let path = format!("arlequin.{name}");
-    let inner = lookup::body(
-        context.case,
-        &format!("{path}.inner"),
-        &given.inner,
-        problems,
-    )?;
-    let outer = lookup::body(
-        context.case,
-        &format!("{path}.outer"),
-        &given.outer,
-        problems,
-    )?;
-    if [inner, outer]
-        .iter()
-        .any(|&body| joints::is_thin(&bodies[body]))
-    {
-        let of = ([inner, outer], held);
-        return thin_overlaps::thin_overlap(
-            context,
-            (name, given),
-            mesh,
-            bodies,
-            of,
-            joints,
-            problems,
-        );
+    let (mesh, name, path) = (joint.mesh, joint.name, &joint.path);
+    let [inner, outer] = joint.bodies;
+    if joint.bodies.iter().any(|&body| is_thin(&bodies[body])) {
+        return thin_overlaps::thin_overlap(joint, given, bodies, joints, problems);
     }
-    same_section(&path, &bodies[inner], &bodies[outer], problems);
+    same_section(path, &bodies[inner], &bodies[outer], problems);
     if bodies[inner].spec.kinematics == Kinematics::Axisymmetric {
         let message =
             "axisymmetric bodies cannot be glued: the products of the link carry no radius";
         let problem = Problem::new(format!("{path}.inner"), message).found(&given.inner);
-        problems.push(problem.accepted(["bars, plane bodies, solids"]));
-        return None;
+        return problems.refuse(problem.accepted(["bars, plane bodies, solids"]));
     }
-    let region = joints::region(mesh, &path, &given.overlap, problems)?;
-    let cells = [inner, outer].map(|body| bodies[body].spec.cells.clone());
+    let region = joints::region(mesh, path, &given.overlap, problems)?;
+    let cells = joint.bodies.map(|body| bodies[body].spec.cells.clone());
     let models = Models {
         mesh,
         inner: &cells[0],
         outer: &cells[1],
     };
-    let mut refuse = |error: Error| {
-        let all = cells.concat();
-        let problem = unfit::unfit(context, (&path, name), mesh, &error, &all);
-        problems.push(problem);
+    let glued = Overlap::new(models, &region).and_then(|overlap| {
+        let weights = overlap.weights(&joints::weighting(given.weights))?;
+        let rows = overlap.rows(&coupling(given))?;
+        Ok((overlap, weights, rows))
+    });
+    let (overlap, weights, mut rows) = match glued {
+        Ok(glued) => glued,
+        Err(error) => return problems.refuse(unfit::unfit(joint, &error, &cells.concat())),
     };
-    let overlap = Overlap::new(models, &region).map_err(&mut refuse).ok()?;
-    let weights = overlap
-        .weights(&joints::weighting(given.weights))
-        .map_err(&mut refuse)
-        .ok()?;
-    let coupling = coupling(given);
-    let mut rows = overlap.rows(&coupling).map_err(&mut refuse).ok()?;
-    let touched = [Model::Inner, Model::Outer].map(|model| overlap.touched(model));
+    let sides = [Model::Inner, Model::Outer];
+    let touched = sides.map(|model| overlap.touched(model));
     let touched = touched.iter().flatten().map(|(cell, _)| *cell);
     let all: Vec<ElementId> = touched.chain(overlap.removed().iter().copied()).collect();
     let built = BuiltOverlap {
         name: name.to_string(),
         measure: overlap.measure(),
         layers: overlap.layers(),
-        sizes: [Model::Inner, Model::Outer].map(|model| overlap.size(model)),
+        sizes: sides.map(|model| overlap.size(model)),
         removed: overlap.removed().len(),
     };
-    joints::enter(context, mesh, built, all, joints, problems)?;
+    joints::enter(joint, built, all, joints, problems)?;
     for warning in &weights.warnings {
         problems.warn(format!("overlap `{name}`: {}", doubt(warning)));
     }
@@ -148,34 +110,16 @@ fn overlap(
             given.outer
         ));
     }
-    joints::weigh(
-        mesh,
-        &mut bodies[inner],
-        overlap.cells(Model::Inner),
-        &weights.inner,
-    );
-    joints::weigh(
-        mesh,
-        &mut bodies[outer],
-        overlap.cells(Model::Outer),
-        &weights.outer,
-    );
-    let dropped = held.drop_rows(&mut rows);
-    unfit::name_rows(
-        name,
-        mesh,
-        &dropped,
-        "removed: supports hold both bodies there",
-        problems,
-    );
-    let slivers: Vec<(u32, u32)> = rows.slivers.iter().map(|s| (s.node, 0)).collect();
-    unfit::name_nodes(
-        name,
-        mesh,
-        &slivers,
-        "merged into neighbours: the overlap contains too little of their support",
-        problems,
-    );
+    for (model, body, weights) in [
+        (Model::Inner, inner, &weights.inner),
+        (Model::Outer, outer, &weights.outer),
+    ] {
+        joints::weigh(mesh, &mut bodies[body], overlap.cells(model), weights);
+    }
+    unfit::drop_held(joint, &mut rows, problems);
+    let slivers: Vec<u32> = rows.slivers.iter().map(|sliver| sliver.node).collect();
+    let what = "merged into neighbours: the overlap contains too little of their support";
+    unfit::name_nodes(joint, &slivers, what, problems);
     Some(rows)
 }
 
@@ -236,7 +180,7 @@ pub(super) fn contacts_outside(
             );
             let problem = Problem::new(format!("contact.{}.{key}", contact.name), message)
                 .accepted(["a surface outside all overlaps"]);
-            let problem = unfit::shown(context, problem, (&name, mesh), &inside);
+            let problem = joints::shown(context, (&name, mesh), problem, &inside);
             problems.push(problem);
         }
     }

@@ -8,12 +8,11 @@ use carom_materials::Law;
 use carom_mesh::Mesh;
 
 use super::context::Context;
-use super::fluids;
-use super::lookup;
-use super::problems::{Problems, dimensions};
+use super::problems::{Problems, Refusal, dimensions};
 use super::shells::is_shell;
+use super::{fluids, lookup};
 use crate::error::Problem;
-use crate::schema::{self, BeamShape, Body, Mass, Section};
+use crate::schema::{self, BeamShape, Body, Mass, NormalVector, Section};
 
 /// The kinematics of beams with this section; `path`: of the body.
 pub(super) fn beam(
@@ -28,72 +27,16 @@ pub(super) fn beam(
         schema::BeamTheory::Timoshenko => BeamTheory::Timoshenko,
         schema::BeamTheory::EulerBernoulli => BeamTheory::EulerBernoulli,
     };
-    let shape = match &given.shape {
-        BeamShape::Properties(given) => Err(given),
-        BeamShape::Circle(circle) => Ok(SectionShape::Circle {
-            diameter: circle.diameter.0,
-        }),
-        BeamShape::Tube(tube) => {
-            let (diameter, thickness) = (tube.diameter.0, tube.thickness.0);
-            let at = format!("{path}.shape.tube.thickness");
-            below(
-                &at,
-                thickness,
-                (0.5 * diameter, "half of `diameter`"),
-                problems,
-            )?;
-            Ok(SectionShape::Tube {
-                diameter,
-                thickness,
-            })
-        }
-        BeamShape::Rectangle(rectangle) => Ok(SectionShape::Rectangle {
-            height: rectangle.height.0,
-            width: rectangle.width.0,
-        }),
-        BeamShape::I(shape) => {
-            let at = |key: &str| format!("{path}.shape.i.{key}");
-            let half = 0.5 * shape.height.0;
-            below(
-                &at("flange"),
-                shape.flange.0,
-                (half, "half of `height`"),
-                problems,
-            )?;
-            // a web as wide as the flanges is a rectangle
-            let width = shape.width.0 * (1.0 + f64::EPSILON);
-            below(&at("web"), shape.web.0, (width, "`width`"), problems)?;
-            Ok(SectionShape::I {
-                height: shape.height.0,
-                width: shape.width.0,
-                web: shape.web.0,
-                flange: shape.flange.0,
-            })
-        }
-    };
+    let shape = shape(&path, &given.shape, problems)?;
     let layers = layers(&path, given, material, problems)?;
-    let properties = match shape {
-        Ok(shape) => shape.properties(material.initial().poisson),
-        Err(given) => properties(mesh, &path, given, theory, problems)?,
+    let properties = match (shape, &given.shape) {
+        (Some(shape), _) => shape.properties(material.initial().poisson),
+        (None, BeamShape::Properties(given)) => properties(mesh, &path, given, theory, problems)?,
+        (None, _) => return None,
     };
-    let orientation = match (&given.orientation, mesh.dim) {
-        (None, _) => None,
-        (Some(given), 3) => Some(lookup::normal(
-            mesh,
-            &format!("{path}.orientation"),
-            given,
-            problems,
-        )?),
-        (Some(given), _) => {
-            let message = "in the plane the axes of a section are known";
-            let problem = Problem::new(format!("{path}.orientation"), message);
-            problems.push(
-                problem
-                    .found(format!("{:?}", given.components()))
-                    .accepted(["no `orientation`"]),
-            );
-            return None;
-        }
+    let orientation = match &given.orientation {
+        None => None,
+        Some(given) => Some(orientation(mesh, &path, given, problems)?),
     };
     let offset = given.offset.map_or([0.0; 2], |offset| offset.map(|e| e.0));
     if mesh.dim == 2 && offset[1] != 0.0 {
@@ -110,11 +53,11 @@ pub(super) fn beam(
         BeamShape::Properties(given) => extremes(mesh, &path, given, problems)?,
         _ => None,
     };
-    let fluid = fluids::added_mass(&path, given.added_mass, diameter, problems)?;
-    let [added_mass, displaced_mass] = fluid;
-    let round = shape.ok().and_then(|shape| shape.radius(mesh.dim));
+    let [added_mass, displaced_mass] =
+        fluids::added_mass(&path, given.added_mass, diameter, problems)?;
+    let round = shape.and_then(|shape| shape.radius(mesh.dim));
     Some(Kinematics::Beam(BeamSection {
-        shape: shape.ok(),
+        shape,
         extremes,
         layers,
         orientation,
@@ -131,6 +74,62 @@ pub(super) fn beam(
     }))
 }
 
+/// The shape of a section, `Some(None)` of properties alone; `path`: of the section.
+fn shape(path: &str, given: &BeamShape, problems: &mut Problems) -> Option<Option<SectionShape>> {
+    Some(Some(match given {
+        BeamShape::Properties(_) => return Some(None),
+        BeamShape::Circle(circle) => SectionShape::Circle {
+            diameter: circle.diameter.0,
+        },
+        BeamShape::Tube(tube) => {
+            let (diameter, thickness) = (tube.diameter.0, tube.thickness.0);
+            let path = format!("{path}.shape.tube.thickness");
+            let most = (0.5 * diameter, "half of `diameter`");
+            below(&path, thickness, most, problems)?;
+            SectionShape::Tube {
+                diameter,
+                thickness,
+            }
+        }
+        BeamShape::Rectangle(rectangle) => SectionShape::Rectangle {
+            height: rectangle.height.0,
+            width: rectangle.width.0,
+        },
+        BeamShape::I(shape) => {
+            let [height, width, web, flange] =
+                [shape.height, shape.width, shape.web, shape.flange].map(|size| size.0);
+            let path = format!("{path}.shape.i");
+            let most = (0.5 * height, "half of `height`");
+            below(&format!("{path}.flange"), flange, most, problems)?;
+            // a web as wide as the flanges is a rectangle
+            let most = (width * (1.0 + f64::EPSILON), "`width`");
+            below(&format!("{path}.web"), web, most, problems)?;
+            SectionShape::I {
+                height,
+                width,
+                web,
+                flange,
+            }
+        }
+    }))
+}
+
+/// A direction in the plane of the first axis of a section.
+fn orientation(
+    mesh: &Mesh,
+    path: &str,
+    given: &NormalVector,
+    problems: &mut Problems,
+) -> Option<[f64; 3]> {
+    let path = format!("{path}.orientation");
+    if mesh.dim == 3 {
+        return lookup::normal(mesh, &path, given, problems);
+    }
+    let problem = Problem::new(path, "in the plane the axes of a section are known");
+    let problem = problem.found(format!("{:?}", given.components()));
+    problems.refuse(problem.accepted(["no `orientation`"]))
+}
+
 /// Layers of fibres of a section that flows. Refuses sections without a shape there, and layers where nothing flows.
 fn layers(
     path: &str,
@@ -143,8 +142,7 @@ fn layers(
         let message = "a section that flows is divided into fibres, for which its shape is needed";
         let problem = Problem::new(format!("{path}.shape.properties"), message);
         let problem = problem.found(format!("properties, with the material {}", material.key()));
-        problems.push(problem.accepted(["circle", "tube", "rectangle", "i"]));
-        return None;
+        return problems.refuse(problem.accepted(["circle", "tube", "rectangle", "i"]));
     }
     let Some(layers) = given.layers else {
         return Some(LAYERS);
@@ -163,8 +161,7 @@ fn layers(
         ),
     };
     let problem = Problem::new(format!("{path}.layers"), message).found(found);
-    problems.push(problem.accepted([accepted]));
-    None
+    problems.refuse(problem.accepted([accepted]))
 }
 
 /// Refuses a size that is not below another.
@@ -173,12 +170,8 @@ fn below(path: &str, size: f64, (most, name): (f64, &str), problems: &mut Proble
         return Some(());
     }
     let problem = Problem::new(path, "the section has no such shape");
-    problems.push(
-        problem
-            .found(format!("{size} m"))
-            .accepted([format!("less than {most} m, {name}")]),
-    );
-    None
+    let problem = problem.found(format!("{size} m"));
+    problems.refuse(problem.accepted([format!("less than {most} m, {name}")]))
 }
 
 /// Properties as they are given; those that the plane does not need are that of the others.
@@ -215,8 +208,7 @@ fn properties(
             dimensions(mesh.dim),
             missing.join(", ")
         );
-        problems.push(Problem::new(format!("{path}.shape.properties"), message));
-        return None;
+        return problems.refuse(Problem::new(format!("{path}.shape.properties"), message));
     }
     let z = given.inertia_z?.0;
     let along_y = given.shear_area_y.unwrap_or(given.area).0;
@@ -250,8 +242,7 @@ fn extremes(
             let message =
                 "stresses of bending need the distances of the extreme fibres along both axes";
             let problem = Problem::new(format!("{path}.shape.properties.{missing}"), message);
-            problems.push(problem.found("nothing"));
-            return None;
+            return problems.refuse(problem.found("nothing"));
         }
     };
     let torsion = torsion.unwrap_or(fibres[0].max(fibres[1]));
@@ -260,25 +251,26 @@ fn extremes(
 
 /// Refuses keys that beams do not take.
 pub(super) fn suits_beams(path: &str, body: &Body, problems: &mut Problems) {
-    if !is_beam(body) {
+    let Some(Section::Beam(section)) = &body.section else {
         return;
-    }
-    let on_ground =
-        matches!(&body.section, Some(Section::Beam(section)) if section.foundation.is_some());
-    let damped = body
-        .damping
-        .as_ref()
-        .is_some_and(|damping| damping.stiffness.is_some());
-    if on_ground && damped {
-        let message = "damping proportional to the stiffness would also be one of the foundation";
-        let problem = Problem::new(format!("{path}.damping.stiffness"), message);
-        problems.push(problem.accepted(["damping.mass", "no `foundation`"]));
-    }
-    if body.rigid.is_some() {
-        let message = "a rigid body of beams has no cells from which its inertia follows";
-        let problem = Problem::new(format!("{path}.rigid"), message);
-        problems.push(problem.accepted(["a rigid body of solid cells", "no `rigid`"]));
-    }
+    };
+    let damping = body.damping.as_ref();
+    let damped = damping.is_some_and(|damping| damping.stiffness.is_some());
+    let table = [
+        Refusal {
+            is: section.foundation.is_some() && damped,
+            key: "damping.stiffness",
+            message: "damping proportional to the stiffness would also be one of the foundation",
+            accepted: &["damping.mass", "no `foundation`"],
+        },
+        Refusal {
+            is: body.rigid.is_some(),
+            key: "rigid",
+            message: "a rigid body of beams has no cells from which its inertia follows",
+            accepted: &["a rigid body of solid cells", "no `rigid`"],
+        },
+    ];
+    problems.refuse_each(path, &table);
 }
 
 /// Initial angular velocity of beams and of solids at finite strain, about their centre of mass, rad/s.
@@ -333,12 +325,7 @@ pub(super) fn initial_spin(
 
 /// The mass of a body: that of beams and shells is consistent where nothing else is said and its scheme takes it.
 pub(super) fn mass_of(context: &Context, number: usize, body: &Body) -> Mass {
-    let zone = context.plan.zone_of(number);
-    let scheme = || {
-        zone.map_or(context.case.time.scheme(), |zone| {
-            context.plan.zones[zone].scheme
-        })
-    };
+    let scheme = || context.scheme_of(number);
     match body.mass {
         Some(mass) => mass,
         None if has_rotations(body) && !scheme().get().needs_lumped_mass() => Mass::Consistent,

@@ -5,123 +5,169 @@ use std::collections::BTreeMap;
 use carom_bodies::{BodySpec, Formulation, Kinematics, MassKind};
 use carom_dynamics::ModelBody;
 use carom_materials::Law;
-use carom_mesh::{ElementId, Mesh};
+use carom_mesh::{ElementId, Group, Mesh};
 
-use super::beams;
-use super::constraints;
 use super::context::Context;
 use super::problems::{Problems, dimensions, plural};
-use super::rigid;
-use super::shells;
+use super::shells::{GivenShell, Sectioned};
+use super::{beams, constraints, rigid, shells};
 use crate::error::Problem;
-use crate::schema::{self, Body, FormulationName, FormulationWith, Mass, Section};
+use crate::schema::{self, Body, FormulationName, FormulationWith, Mass, Section, Vector};
 
 /// Defects of elements listed in one message; the others are counted.
 const LISTED: usize = 3;
 
+/// The bodies of a case, in the order of their names.
 pub(super) fn lower(
     context: &Context,
     mesh: &Mesh,
     materials: &BTreeMap<String, Law>,
     problems: &mut Problems,
 ) -> Vec<ModelBody> {
-    let mut bodies: Vec<ModelBody> = Vec::new();
-    for (number, (name, body)) in context.case.body.iter().enumerate() {
-        let path = format!("body.{name}");
-        let material = materials.get(&body.material).copied();
-        if material.is_none() {
-            let problem = Problem::new(format!("{path}.material"), "no material of this name");
-            problems.push(problem.unknown(&body.material, materials.keys().map(String::as_str)));
-        }
-        let Some(group) = problems.group(mesh, &format!("{path}.region"), &body.region) else {
-            continue;
+    let mut bodies = Vec::new();
+    for (number, (name, given)) in context.case.body.iter().enumerate() {
+        let one = &One {
+            number,
+            name,
+            path: format!("body.{name}"),
+            given,
         };
-        let (mut material, mut plies, mut nodal_thickness) = (material, Vec::new(), None);
-        let kinematics = match (&body.section, material) {
-            (Some(Section::Beam(section)), Some(material)) => {
-                beams::beam(mesh, &path, section, material, problems)
-            }
-            (Some(Section::Shell(section)), Some(own)) => {
-                let cells = &group.elements;
-                let made = shells::shell(
-                    context,
-                    (mesh, cells),
-                    &path,
-                    (section, own),
-                    materials,
-                    problems,
-                );
-                made.map(|made| {
-                    (plies, material) = (made.plies, Some(made.material));
-                    nodal_thickness = made.nodal_thickness;
-                    made.kinematics
-                })
-            }
-            (Some(Section::Beam(_) | Section::Shell(_)), None) => None,
-            (section, _) => Some(kinematics(section.as_ref())),
-        };
-        beams::suits_beams(&path, body, problems);
-        shells::suits_shells(&path, body, problems);
-        let Some(kinematics) = kinematics else {
-            continue;
-        };
-        if !takes_cells(mesh, (&path, body), kinematics, group.dim, problems) {
-            continue;
-        }
-        let cells = group.elements.clone();
-        sound(mesh, &path, &cells, problems);
-        apart(&path, &cells, &bodies, problems);
-        let (mut velocity, mut displacement) = ([0.0; 3], [0.0; 3]);
-        if let Some(initial) = &body.initial {
-            if let Some(vector) = &initial.velocity {
-                velocity = problems.vector(mesh, &format!("{path}.initial.velocity"), vector);
-            }
-            if let Some(vector) = &initial.displacement {
-                displacement =
-                    problems.vector(mesh, &format!("{path}.initial.displacement"), vector);
-            }
-        }
-        let Some(material) = material else { continue };
-        let spec = BodySpec {
-            name: name.to_string(),
-            cells,
-            kinematics,
-            material,
-            formulation: formulation(body.formulation, (kinematics, &material)),
-            weights: None,
-            exact_products: false,
-            viscosity: body.bulk_viscosity.map(Into::into),
-            scaling: body.mass_scaling.map(Into::into),
-            deletion: body.deletion.map(|deletion| deletion.plastic_strain),
-            releases: Vec::new(),
-            plies,
-            nodal_thickness,
-            tightened: Vec::new(),
-            layers: Vec::new(),
-        };
-        let spec = constraints::hinged(mesh, (&path, body), spec, problems);
-        let spin = beams::initial_spin(mesh, (&path, body), &spec, problems);
-        let rigid = match kinematics {
-            Kinematics::Beam(_) | Kinematics::Shell(_) => None,
-            _ => rigid::rigid(mesh, &path, body, &spec, problems),
-        };
-        bodies.push(ModelBody {
-            spec,
-            mass: match beams::mass_of(context, number, body) {
-                Mass::Lumped => MassKind::Lumped,
-                Mass::Consistent => MassKind::Consistent,
-            },
-            velocity,
-            displacement,
-            spin,
-            rigid,
-            reduced: None,
-            modal: None,
-        });
+        let body = body(context, mesh, one, (materials, &bodies), problems);
+        bodies.extend(body);
     }
     one_plane(&bodies, problems);
     shells::sound_shells(context, mesh, &bodies, problems);
     bodies
+}
+
+/// A body of the case.
+struct One<'a> {
+    number: usize,
+    name: &'a str,
+    path: String,
+    given: &'a Body,
+}
+
+/// One body. `before`: those of the names before it.
+fn body(
+    context: &Context,
+    mesh: &Mesh,
+    one: &One,
+    (materials, before): (&BTreeMap<String, Law>, &[ModelBody]),
+    problems: &mut Problems,
+) -> Option<ModelBody> {
+    let One { path, given, .. } = one;
+    if !materials.contains_key(&given.material) {
+        let problem = Problem::new(format!("{path}.material"), "no material of this name");
+        problems.push(problem.unknown(&given.material, materials.keys().map(String::as_str)));
+    }
+    let group = problems.group(mesh, &format!("{path}.region"), &given.region)?;
+    let section = section(context, (mesh, group), one, materials, problems);
+    beams::suits_beams(path, given, problems);
+    shells::suits_shells(path, given, problems);
+    let Sectioned {
+        kinematics,
+        material,
+        plies,
+        nodal_thickness,
+    } = section?;
+    takes_cells(mesh, (path, given), kinematics, group.dim, problems)?;
+    let cells = group.elements.clone();
+    sound(mesh, path, &cells, problems);
+    apart(path, &cells, before, problems);
+    let initial = given.initial.as_ref();
+    let velocity = initial.and_then(|initial| initial.velocity.as_ref());
+    let velocity = start(
+        mesh,
+        &format!("{path}.initial.velocity"),
+        velocity,
+        problems,
+    );
+    let displacement = initial.and_then(|initial| initial.displacement.as_ref());
+    let displacement = start(
+        mesh,
+        &format!("{path}.initial.displacement"),
+        displacement,
+        problems,
+    );
+    let material = material?;
+    let spec = BodySpec {
+        name: one.name.to_string(),
+        cells,
+        kinematics,
+        material,
+        formulation: formulation(given.formulation, (kinematics, &material)),
+        weights: None,
+        exact_products: false,
+        viscosity: given.bulk_viscosity.map(Into::into),
+        scaling: given.mass_scaling.map(Into::into),
+        deletion: given.deletion.map(|deletion| deletion.plastic_strain),
+        releases: Vec::new(),
+        plies,
+        nodal_thickness,
+        tightened: Vec::new(),
+        layers: Vec::new(),
+    };
+    let spec = constraints::hinged(mesh, (path, given), spec, problems);
+    let spin = beams::initial_spin(mesh, (path, given), &spec, problems);
+    let rigid = match kinematics {
+        Kinematics::Beam(_) | Kinematics::Shell(_) => None,
+        _ => rigid::rigid(mesh, path, given, &spec, problems),
+    };
+    Some(ModelBody {
+        spec,
+        mass: match beams::mass_of(context, one.number, given) {
+            Mass::Lumped => MassKind::Lumped,
+            Mass::Consistent => MassKind::Consistent,
+        },
+        velocity,
+        displacement,
+        spin,
+        rigid,
+        reduced: None,
+        modal: None,
+    })
+}
+
+/// An initial value; zero where none is given.
+fn start<Q: Copy + Into<f64>>(
+    mesh: &Mesh,
+    path: &str,
+    given: Option<&Vector<Q>>,
+    problems: &mut Problems,
+) -> [f64; 3] {
+    given.map_or([0.0; 3], |given| problems.vector(mesh, path, given))
+}
+
+/// What the section of a body makes of it; none of beams and shells without a material.
+fn section(
+    context: &Context,
+    (mesh, group): (&Mesh, &Group),
+    one: &One,
+    materials: &BTreeMap<String, Law>,
+    problems: &mut Problems,
+) -> Option<Sectioned> {
+    let One { path, given, .. } = one;
+    let material = materials.get(&given.material).copied();
+    let kinematics = match &given.section {
+        Some(Section::Beam(section)) => beams::beam(mesh, path, section, material?, problems)?,
+        Some(Section::Shell(section)) => {
+            let of = GivenShell {
+                path,
+                section,
+                material: material?,
+                materials,
+            };
+            return shells::shell(context, (mesh, &group.elements), &of, problems);
+        }
+        section => kinematics(section.as_ref()),
+    };
+    Some(Sectioned {
+        kinematics,
+        material,
+        plies: Vec::new(),
+        nodal_thickness: None,
+    })
 }
 
 /// Refuses axisymmetric bodies beside plane ones: the same coordinate would be a radius and none.
@@ -137,22 +183,19 @@ fn one_plane(bodies: &[ModelBody], problems: &mut Problems) {
             round.spec.name
         );
         let problem = Problem::new(format!("body.{}.section", flat.spec.name), message);
-        problems.push(
-            problem
-                .found(flat.spec.kinematics.name())
-                .accepted(["section.axisymmetric"]),
-        );
+        let problem = problem.found(flat.spec.kinematics.name());
+        problems.push(problem.accepted(["section.axisymmetric"]));
     }
 }
 
-/// Whether a kinematics goes with cells of dimension `dim`.
+/// Refuses a kinematics that does not go with cells of dimension `dim`.
 fn takes_cells(
     mesh: &Mesh,
     (path, body): (&str, &Body),
     kinematics: Kinematics,
     dim: usize,
     problems: &mut Problems,
-) -> bool {
+) -> Option<()> {
     let kind = |dim: usize| ["points", "bars", "plane cells", "solid cells"][dim.min(3)];
     let takes: &[&str] = match dim {
         1 if mesh.dim == 1 => &["section.bar"],
@@ -171,44 +214,27 @@ fn takes_cells(
         _ => &["no section"],
     };
     let problem = if dim == 0 {
-        let problem = Problem::new(
-            format!("{path}.region"),
-            format!("a body cannot be made of {} here", kind(dim)),
-        );
-        Some(problem.found(&body.region).accepted([format!(
-            "a group of cells of a mesh of {}",
-            dimensions(mesh.dim)
-        )]))
+        let message = format!("a body cannot be made of {} here", kind(dim));
+        let problem = Problem::new(format!("{path}.region"), message).found(&body.region);
+        let dimensions = dimensions(mesh.dim);
+        problem.accepted([format!("a group of cells of a mesh of {dimensions}")])
     } else if kinematics.dim() == dim
         && !(mesh.dim == 1 && beams::is_beam(body))
         && (dim != 2 || shells::is_shell(body) == (mesh.dim == 3))
     {
-        None
+        return Some(());
     } else if body.section.is_none() {
-        let message = format!(
-            "the group `{}` holds {}, which need a section",
-            body.region,
-            kind(dim)
-        );
-        Some(
-            Problem::new(path, message)
-                .found("no section")
-                .accepted(takes.to_vec()),
-        )
+        let (region, kind) = (&body.region, kind(dim));
+        let message = format!("the group `{region}` holds {kind}, which need a section");
+        let problem = Problem::new(path, message).found("no section");
+        problem.accepted(takes.to_vec())
     } else {
-        let message = format!(
-            "this section does not go with the {} of the group `{}`",
-            kind(dim),
-            body.region
-        );
+        let (region, kind) = (&body.region, kind(dim));
+        let message = format!("this section does not go with the {kind} of the group `{region}`");
         let problem = Problem::new(format!("{path}.section"), message);
-        Some(problem.found(kinematics.name()).accepted(takes.to_vec()))
+        problem.found(kinematics.name()).accepted(takes.to_vec())
     };
-    let sound = problem.is_none();
-    problem
-        .into_iter()
-        .for_each(|problem| problems.push(problem));
-    sound
+    problems.refuse(problem)
 }
 
 pub(super) fn sound(mesh: &Mesh, path: &str, cells: &[ElementId], problems: &mut Problems) {

@@ -43,8 +43,7 @@ pub(super) fn file_columns<const N: usize>(
         Ok(table) => table,
         Err(error) => {
             let message = format!("{file}: {error}");
-            problems.push(Problem::new(format!("{path}.file"), message));
-            return None;
+            return problems.refuse(Problem::new(format!("{path}.file"), message));
         }
     };
     let found = keys.map(|column| file_column(path, (file, &table), &column, problems));
@@ -79,13 +78,11 @@ fn file_column(
             let message = format!("{file} has no column of this name");
             let problem = Problem::new(format!("{path}.{key}"), message);
             let columns = columns.iter().map(String::as_str);
-            problems.push(problem.unknown(&name, columns));
-            return None;
+            return problems.refuse(problem.unknown(&name, columns));
         }
         Err(error) => {
             let message = format!("{file}: {error}");
-            problems.push(Problem::new(format!("{path}.{key}"), message));
-            return None;
+            return problems.refuse(Problem::new(format!("{path}.{key}"), message));
         }
     };
     let unit_path = format!("{path}.{unit_key}");
@@ -93,8 +90,7 @@ fn file_column(
         (Some(of_file), Some(unit)) if of_file != *unit => {
             let message = format!("column `{name}` has the unit [{of_file}] already");
             let problem = Problem::new(unit_path, message).found(*unit);
-            problems.push(problem);
-            return None;
+            return problems.refuse(problem);
         }
         (Some(of_file), _) => Some((of_file, format!("{path}.{key}"))),
         (None, unit) => unit.map(|unit| (unit, unit_path)),
@@ -115,10 +111,9 @@ fn factor_of(path: &str, unit: &str, dimension: &str, problems: &mut Problems) -
         Err(error) => {
             let mut problem = Problem::new(path, error.to_string()).found(unit);
             problem.nearest = error.meant();
-            problems.push(
+            problems.refuse(
                 problem.accepted([format!("a unit of {dimension}, such as {}", wanted.unit())]),
-            );
-            None
+            )
         }
     }
 }

@@ -5,11 +5,10 @@ use carom_bodies::{BodySpec, Kinematics, Release};
 use carom_dynamics::{ModelBody, ModelConstraint};
 use carom_mesh::{ElementId, Mesh};
 
-use super::beams;
 use super::context::Context;
-use super::lookup;
 use super::problems::Problems;
 use super::turning::{SMALL_TURNS, any_angle};
+use super::{beams, lookup};
 use crate::error::Problem;
 use crate::schema::{Axis, Body, Hinge};
 
@@ -39,11 +38,8 @@ pub(super) fn lower(
             .collect();
         if nodes.is_empty() {
             let problem = Problem::new(format!("{path}.nodes"), "no node but the first one");
-            problems.push(
-                problem
-                    .found(&link.nodes)
-                    .accepted(["a group with other nodes"]),
-            );
+            let problem = problem.found(&link.nodes);
+            problems.push(problem.accepted(["a group with other nodes"]));
             continue;
         }
         let leads = turns(first);

@@ -9,14 +9,10 @@ use carom_contact::{Initial, Integration, Law, Shape, Sliding, Target};
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget, System};
 use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
-use super::advice;
 use super::context::Context;
-use super::discrete;
 use super::laws::{self, Spring, sides};
-use super::obstacles;
 use super::problems::Problems;
-use super::surfaces;
-use super::zones;
+use super::{advice, discrete, obstacles, surfaces, zones};
 use crate::accelerations::accelerations;
 use crate::error::Problem;
 use crate::facts::approach;
@@ -231,11 +227,8 @@ pub(super) fn listed_twice(contacts: &[ModelContact], problems: &mut Problems) {
             if same {
                 let message = format!("the contact `{}` joins the same faces already", other.name);
                 let problem = Problem::new(format!("contact.{}", contact.name), message);
-                problems.push(
-                    problem
-                        .found(format!("`{}` and `{}`", other.name, contact.name))
-                        .accepted(["one contact for a pair of faces"]),
-                );
+                let problem = problem.found(format!("`{}` and `{}`", other.name, contact.name));
+                problems.push(problem.accepted(["one contact for a pair of faces"]));
             } else if let (ModelTarget::Surface(one), ModelTarget::Surface(two)) =
                 (&contact.primary, &other.primary)
                 && shares_faces(&contact.secondary, two)
@@ -283,11 +276,8 @@ pub(super) fn able_to_act(system: &System, problems: &mut Problems) {
         }
         let message = "this contact can never act: at the start no point of the secondary surface has an opposite face, and small sliding does not pair points again";
         let problem = Problem::new(format!("contact.{}", contact.name), message);
-        problems.push(
-            problem
-                .found("sliding = \"small\"")
-                .accepted(["sliding = \"finite\"", "surfaces that face each other"]),
-        );
+        let problem = problem.found("sliding = \"small\"");
+        problems.push(problem.accepted(["sliding = \"finite\"", "surfaces that face each other"]));
     }
 }
 

@@ -52,10 +52,7 @@ pub(super) fn ascending(path: &str, times: &[f64], problems: &mut Problems) {
     let late = |k: &usize| times[*k] <= times[k - 1];
     if let Some(k) = (1..times.len()).find(late) {
         let problem = Problem::new(format!("{path}[{k}].time"), "the times must ascend");
-        problems.push(
-            problem
-                .found(format!("{} s", times[k]))
-                .accepted([format!("more than {} s", times[k - 1])]),
-        );
+        let problem = problem.found(format!("{} s", times[k]));
+        problems.push(problem.accepted([format!("more than {} s", times[k - 1])]));
     }
 }

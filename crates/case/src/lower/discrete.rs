@@ -7,9 +7,8 @@ use carom_elements::Kind;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
 
 use super::context::Context;
-use super::lookup;
 use super::problems::{Problems, plural};
-use super::rigid;
+use super::{lookup, rigid};
 use crate::error::Problem;
 use crate::schema::{Ends, NormalVector, PointMass};
 
@@ -206,12 +205,8 @@ pub(super) fn ends(
     };
     let problem = Problem::new(path, message);
     let [one, other] = &found;
-    problems.push(
-        problem
-            .found(format!("{} and {}", count(one), count(other)))
-            .accepted([accepted]),
-    );
-    None
+    let problem = problem.found(format!("{} and {}", count(one), count(other)));
+    problems.refuse(problem.accepted([accepted]))
 }
 
 fn curve(path: &str, points: Vec<[f64; 2]>, problems: &mut Problems) -> Option<Curve> {
@@ -220,7 +215,7 @@ fn curve(path: &str, points: Vec<[f64; 2]>, problems: &mut Problems) -> Option<C
         Err(error) => error,
     };
     let path = format!("{path}.curve");
-    problems.push(match error {
+    problems.refuse(match error {
         CurveError::NotAscending {
             point,
             found,
@@ -229,8 +224,7 @@ fn curve(path: &str, points: Vec<[f64; 2]>, problems: &mut Problems) -> Option<C
             .found(format!("{found}"))
             .accepted([format!("more than {before}")]),
         other => Problem::new(path, other.to_string()),
-    });
-    None
+    })
 }
 
 /// Whether a dashpot never gives energy: force and rate have the same sign, and none is without the other.

@@ -32,8 +32,7 @@ pub(super) fn foundation(
             format!("{path}.foundation.z"),
             "in the plane nothing moves along z",
         );
-        problems.push(problem.accepted(["x", "y"]));
-        return None;
+        return problems.refuse(problem.accepted(["x", "y"]));
     }
     Some([given.x, given.y, given.z].map(|k| k.map_or(0.0, |k| k.0)))
 }
@@ -56,8 +55,7 @@ pub(super) fn added_mass(
             path,
             "the added mass in a channel is known of round sections",
         );
-        problems.push(problem.accepted(["shape.circle", "shape.tube", "`per-length`"]));
-        return None;
+        return problems.refuse(problem.accepted(["shape.circle", "shape.tube", "`per-length`"]));
     };
     let outer = channel.diameter.0;
     if outer <= diameter {
@@ -65,12 +63,8 @@ pub(super) fn added_mass(
             format!("{path}.diameter"),
             "the channel is not around the section",
         );
-        problems.push(
-            problem
-                .found(format!("{outer} m"))
-                .accepted([format!("more than {diameter} m")]),
-        );
-        return None;
+        let problem = problem.found(format!("{outer} m"));
+        return problems.refuse(problem.accepted([format!("more than {diameter} m")]));
     }
     Some(FluidGap::around(
         channel.density.0,
@@ -143,8 +137,7 @@ fn fluid_per_length(
     let problem = Problem::new(format!("{path}.diameters"), message);
     let found = format!("{} m and {} m", 2.0 * inner, 2.0 * outer);
     let accepted = "the inner one first, and less than the outer one";
-    problems.push(problem.found(found).accepted([accepted]));
-    None
+    problems.refuse(problem.found(found).accepted([accepted]))
 }
 
 /// Pairs of nodes beside each other with the length that each stands for (m), and the axis.
@@ -170,8 +163,7 @@ fn beside(
                     plural(nodes[1].len(), "node")
                 );
                 let accepted = ["groups of one node", "groups of lines, without `length`"];
-                problems.push(problem.found(found).accepted(accepted));
-                None
+                problems.refuse(problem.found(found).accepted(accepted))
             }
         };
     }
@@ -183,8 +175,7 @@ fn beside(
             "a group of bars or beams",
             "a group of one node with `length` and `axis`",
         ];
-        problems.push(problem.accepted(accepted));
-        return None;
+        return problems.refuse(problem.accepted(accepted));
     }
     let (own, others) = (mesh.group_nodes(inner), mesh.group_nodes(outer));
     let [from, to] = [own.first()?, own.last()?].map(|&node| mesh.nodes[node as usize]);
@@ -204,7 +195,7 @@ fn beside(
                 format!("{path}.outer"),
                 "nodes of the two bodies must stand beside each other along the axis",
             );
-            problems.push(
+            return problems.refuse(
                 problem
                     .found(format!(
                         "{}, none within {:.3e} m of node {node} of the inner body",
@@ -213,7 +204,6 @@ fn beside(
                     ))
                     .accepted(["bodies with the same division along the axis"]),
             );
-            return None;
         }
         let around = |id: &&ElementId| mesh.element_nodes(**id).contains(&node);
         let half = |id: &ElementId| {

@@ -353,8 +353,7 @@ fn between(
     if context.case.contact.get(&name).is_some() || context.case.stop.get(&name).is_some() {
         let message = "the general contact has a contact of this name";
         let problem = Problem::new(format!("contact.{name}"), message);
-        problems.push(problem.accepted(["another name"]));
-        return None;
+        return problems.refuse(problem.accepted(["another name"]));
     }
     // points of axes see faces, otherwise those of the finer side the coarser one
     let order = |part: &Part| (!part.is_axis(), part.length);

@@ -8,9 +8,11 @@ use carom_dynamics::{ModelBody, ModelLink};
 use carom_mesh::{ElementId, Mesh};
 
 use super::context::Context;
-use super::problems::{Problems, plural};
-use super::unfit;
+use super::held::Held;
+use super::lookup;
+use super::problems::{Problems, plural, with_cells};
 use crate::error::Problem;
+use crate::offenders::Offenders;
 use crate::schema::{self, OverlapRegion, OverlapShape, ProfileWith};
 
 /// Cells of the outer body across an overlap below which waves notice it.
@@ -40,57 +42,83 @@ pub(super) struct Joints {
     pub(super) inside: BTreeMap<ElementId, usize>,
 }
 
-pub(super) fn link(
-    context: &Context,
-    name: &str,
-    bodies: (&str, &str),
-    rows: Rows,
-    joints: &mut Joints,
-) {
-    let zone = |body: &str| {
-        let number = context.case.body.names().position(|one| one == body);
-        number.and_then(|number| context.plan.zone_of(number))
-    };
-    if let (Some(inner), Some(outer)) = (zone(bodies.0), zone(bodies.1)) {
-        joints.links.push(ModelLink {
-            name: name.to_string(),
-            zones: [inner, outer],
-            rows: rows.rows,
-        });
+/// An overlap or a border between two bodies.
+pub(super) struct Joint<'a> {
+    pub(super) context: &'a Context<'a>,
+    pub(super) mesh: &'a Mesh,
+    pub(super) held: &'a Held,
+    pub(super) name: &'a str,
+    /// Its key.
+    pub(super) path: String,
+    /// Numbers of the inner and the outer body.
+    pub(super) bodies: [usize; 2],
+}
+
+impl Joint<'_> {
+    /// The numbers of the inner and the outer body of a joint.
+    pub(super) fn bodies(
+        context: &Context,
+        path: &str,
+        names: [&str; 2],
+        problems: &mut Problems,
+    ) -> Option<[usize; 2]> {
+        let mut body =
+            |key, name| lookup::body(context.case, &format!("{path}.{key}"), name, problems);
+        let (inner, outer) = (body("inner", names[0]), body("outer", names[1]));
+        Some([inner?, outer?])
     }
+
+    /// Its link, where zones have its bodies.
+    pub(super) fn link(&self, rows: Rows) -> Option<ModelLink> {
+        let [inner, outer] = self.bodies.map(|body| self.context.plan.zone_of(body));
+        Some(ModelLink {
+            name: self.name.to_string(),
+            zones: [inner?, outer?],
+            rows: rows.rows,
+        })
+    }
+
+    /// A problem with the cells that it is about, if there are any.
+    pub(super) fn shown(&self, problem: Problem, cells: &[ElementId]) -> Problem {
+        shown(self.context, (self.name, self.mesh), problem, cells)
+    }
+}
+
+/// A problem with the cells of an overlap that it is about, if there are any.
+pub(super) fn shown(
+    context: &Context,
+    (overlap, mesh): (&str, &Mesh),
+    problem: Problem,
+    cells: &[ElementId],
+) -> Problem {
+    if cells.is_empty() {
+        return problem;
+    }
+    let offenders = Offenders::new(format!("overlap-{overlap}"), mesh, cells);
+    with_cells(problem, offenders, context.file)
 }
 
 /// Enters an overlap with the cells that it touches or takes away; refuses a cell of two overlaps.
 pub(super) fn enter(
-    context: &Context,
-    mesh: &Mesh,
+    joint: &Joint,
     overlap: BuiltOverlap,
     all: Vec<ElementId>,
     joints: &mut Joints,
     problems: &mut Problems,
 ) -> Option<()> {
-    let name = overlap.name.clone();
-    let twice: Vec<ElementId> = all
-        .iter()
-        .copied()
-        .filter(|cell| joints.inside.contains_key(cell))
-        .collect();
+    let is_known = |cell: &&ElementId| joints.inside.contains_key(*cell);
+    let twice: Vec<ElementId> = all.iter().filter(is_known).copied().collect();
     if let Some(first) = twice.first() {
         let other = &joints.overlaps[joints.inside[first]].name;
-        let message = format!(
-            "{} belong to this overlap and to `{other}`",
-            plural(twice.len(), "cell")
-        );
-        let problem = Problem::new(format!("arlequin.{name}.overlap"), message)
-            .accepted(["overlaps with no cell in common"]);
-        let problem = unfit::shown(context, problem, (&name, mesh), &twice);
-        problems.push(problem);
-        return None;
+        let count = plural(twice.len(), "cell");
+        let message = format!("{count} belong to this overlap and to `{other}`");
+        let problem = Problem::new(format!("{}.overlap", joint.path), message);
+        let problem = problem.accepted(["overlaps with no cell in common"]);
+        return problems.refuse(joint.shown(problem, &twice));
     }
     let number = joints.overlaps.len();
-    joints
-        .inside
-        .extend(all.into_iter().map(|cell| (cell, number)));
+    let all = all.into_iter().map(|cell| (cell, number));
+    joints.inside.extend(all);
     joints.overlaps.push(overlap);
     Some(())
 }
@@ -108,8 +136,7 @@ pub(super) fn region(
             if !mesh.groups.contains_key(name) {
                 let names = mesh.groups.keys().map(String::as_str);
                 let problem = Problem::new(path, "no group of this name in the mesh");
-                problems.push(problem.unknown(name, names.chain(["intersection"])));
-                return None;
+                return problems.refuse(problem.unknown(name, names.chain(["intersection"])));
             }
             let group = problems.group(mesh, &path, name)?;
             Some(Region::Cells(group.elements.clone()))
@@ -120,8 +147,8 @@ pub(super) fn region(
             let max = problems.vector(mesh, &format!("{path}.max"), &sides.max);
             if (0..mesh.dim).any(|i| min[i] >= max[i]) {
                 let problem = Problem::new(path, "a box without volume");
-                problems.push(problem.accepted(["every component of `max` above that of `min`"]));
-                return None;
+                return problems
+                    .refuse(problem.accepted(["every component of `max` above that of `min`"]));
             }
             Some(Region::Box { min, max })
         }

@@ -29,8 +29,7 @@ pub(super) fn law(
     let law = match given.law(&defaults) {
         Ok(law) => law,
         Err(error) => {
-            problems.push(no_curve(&format!("contact.{name}.law.stop"), &error));
-            return None;
+            return problems.refuse(no_curve(&format!("contact.{name}.law.stop"), &error));
         }
     };
     if let Law::Compliance(law) = &law {

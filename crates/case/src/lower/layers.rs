@@ -7,7 +7,7 @@ use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh, Parts};
 
 use super::context::Context;
-use super::problems::Problems;
+use super::problems::{Problems, Refusal};
 use crate::error::Problem;
 use crate::schema::Pretension;
 
@@ -20,55 +20,63 @@ const WANTED: [&str; 2] = [
     "a group of the faces of cells in one plane across the bolt, inside it",
 ];
 
-/// Tells a solid which of its layers are tightened: those of a group of its cells, or beside a group of faces inside it.
+/// Bolts as a case gives them.
+pub(super) struct Bolt<'a> {
+    pub(super) name: &'a str,
+    /// Its key.
+    pub(super) path: String,
+    pub(super) given: &'a Pretension,
+}
+
+impl Bolt<'_> {
+    /// The name of one of `count` bolts.
+    pub(super) fn name_of(&self, k: usize, count: usize) -> String {
+        match count {
+            1 => self.name.to_owned(),
+            _ => format!("{}-{}", self.name, k + 1),
+        }
+    }
+}
+
+/// The layers of a solid that are tightened: those of a group of its cells, or beside a group of faces inside it.
 pub(super) fn across_solid(
     context: &Context,
-    (mesh, body): (&Mesh, &mut ModelBody),
-    (name, path, given): (&str, &str, &Pretension),
-    elements: &[ElementId],
+    (mesh, body): (&Mesh, &ModelBody),
+    bolt: &Bolt,
     problems: &mut Problems,
-) {
-    let path = format!("{path}.on");
-    if may_have_layers(context, &path, body, problems).is_none() {
-        return;
-    }
-    let layers = match mesh.kind(elements[0]).table().dim == mesh.dim {
-        true => pieces(mesh, elements)
-            .into_iter()
-            .map(|cells| layer(mesh, body, cells))
-            .collect(),
-        false => pieces(mesh, elements)
-            .iter()
-            .map(|faces| beside(mesh, body, faces))
-            .collect::<Option<Vec<_>>>(),
+) -> Option<Vec<TightenedLayer>> {
+    let path = format!("{}.on", bolt.path);
+    may_have_layers(context, &path, body, problems)?;
+    let on = bolt.given.on.as_deref().unwrap_or_default();
+    let elements = &mesh.groups.get(on)?.elements;
+    let pieces = pieces(mesh, elements).into_iter();
+    let layers: Option<Vec<_>> = match mesh.kind(elements[0]).table().dim == mesh.dim {
+        true => pieces.map(|cells| layer(mesh, body, cells)).collect(),
+        false => pieces.map(|faces| beside(mesh, body, &faces)).collect(),
     };
     let Some(layers) = layers else {
         let message = "this is no section across a bolt: a static stage shortens a layer of cells between two planes";
-        let problem = Problem::new(path, message).found(given.on.as_deref().unwrap_or_default());
-        problems.push(problem.accepted(WANTED));
-        return;
+        let problem = Problem::new(path, message).found(on);
+        return problems.refuse(problem.accepted(WANTED));
     };
     let count = layers.len();
+    let mut tightened: Vec<TightenedLayer> = Vec::new();
     for (k, (cells, axis)) in layers.into_iter().enumerate() {
-        let mut others = body.spec.layers.iter();
-        if let Some(other) =
-            others.find(|other| other.cells.iter().any(|cell| cells.contains(cell)))
-        {
+        let mut others = body.spec.layers.iter().chain(&tightened);
+        let shares = |other: &&TightenedLayer| other.cells.iter().any(|cell| cells.contains(cell));
+        if let Some(other) = others.find(shares) {
             let message = format!("`{}` tightens the same cells", other.name);
-            problems.push(Problem::new(path, message));
-            return;
+            return problems.refuse(Problem::new(path, message));
         }
-        body.spec.layers.push(TightenedLayer {
-            name: match count {
-                1 => name.to_owned(),
-                _ => format!("{name}-{}", k + 1),
-            },
+        tightened.push(TightenedLayer {
+            name: bolt.name_of(k, count),
             cells,
             axis,
-            force: given.force.0,
+            force: bolt.given.force.0,
             tightens: false,
         });
     }
+    Some(tightened)
 }
 
 /// Refuses solids whose layers cannot be tightened.
@@ -79,30 +87,35 @@ fn may_have_layers(
     problems: &mut Problems,
 ) -> Option<()> {
     let name = &body.spec.name;
-    let given = context.case.body.get(name)?;
-    let (message, accepted) = if body.spec.material.finite().is_some() {
-        (
-            "a solid at finite strain is not tightened",
-            "a body of its own for the shank, of an `elastic` material, on nodes of the rest",
-        )
-    } else if given.reduction.is_some() {
-        (
-            "a reduced body is not tightened",
-            "a body that is not reduced",
-        )
-    } else if body.rigid.is_some() {
-        ("a rigid body is not tightened", "a body that is not rigid")
-    } else if body.spec.weights.is_some() {
-        (
-            "a body that shares its volume with another model is not tightened",
-            "a body that is alone in its volume",
-        )
-    } else {
-        return Some(());
-    };
-    let problem = Problem::new(path, message).found(name.as_str());
-    problems.push(problem.accepted([accepted]));
-    None
+    let table = [
+        Refusal {
+            is: body.spec.material.finite().is_some(),
+            key: "",
+            message: "a solid at finite strain is not tightened",
+            accepted: &[
+                "a body of its own for the shank, of an `elastic` material, on nodes of the rest",
+            ],
+        },
+        Refusal {
+            is: context.case.body.get(name)?.reduction.is_some(),
+            key: "",
+            message: "a reduced body is not tightened",
+            accepted: &["a body that is not reduced"],
+        },
+        Refusal {
+            is: body.rigid.is_some(),
+            key: "",
+            message: "a rigid body is not tightened",
+            accepted: &["a body that is not rigid"],
+        },
+        Refusal {
+            is: body.spec.weights.is_some(),
+            key: "",
+            message: "a body that shares its volume with another model is not tightened",
+            accepted: &["a body that is alone in its volume"],
+        },
+    ];
+    problems.refuse_first((path, Some(name)), &table)
 }
 
 /// The solid that has the cells of a group, or cells with its faces; none where no solid has.

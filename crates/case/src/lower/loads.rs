@@ -5,12 +5,11 @@ use carom_mesh::{ElementId, Mesh, Surface};
 use carom_signals::{Error, RandomField};
 
 use super::context::Context;
-use super::course;
 use super::lookup::{self, AXES};
 use super::probes::integrals;
 use super::problems::Problems;
 use super::shells::shell_cells;
-use super::signals;
+use super::{course, signals};
 use crate::error::Problem;
 use crate::schema::{self, AmplitudeCourse};
 

@@ -25,12 +25,8 @@ pub(super) fn single(mesh: &Mesh, path: &str, name: &str, problems: &mut Problem
         return Some(node);
     }
     let problem = Problem::new(path, "a group of one node is needed");
-    problems.push(
-        problem
-            .found(plural(nodes.len(), "node"))
-            .accepted(["a group of one node"]),
-    );
-    None
+    let problem = problem.found(plural(nodes.len(), "node"));
+    problems.refuse(problem.accepted(["a group of one node"]))
 }
 
 pub(super) fn surface(
@@ -49,8 +45,7 @@ pub(super) fn surface(
         Ok(surface) => Some(surface),
         Err(error) => {
             let problem = Problem::new(path, error.to_string()).found(name);
-            problems.push(problem.accepted(["a group of outer sides of bodies"]));
-            None
+            problems.refuse(problem.accepted(["a group of outer sides of bodies"]))
         }
     }
 }
@@ -66,8 +61,7 @@ pub(super) fn normal(
     if normal[mesh.dim..].iter().any(|n| *n != 0.0) {
         let message = format!("a normal beyond the {} of the mesh", dimensions(mesh.dim));
         let problem = Problem::new(path, message).found(format!("{normal:?}"));
-        problems.push(problem.accepted(["a normal in the space of the mesh"]));
-        return None;
+        return problems.refuse(problem.accepted(["a normal in the space of the mesh"]));
     }
     Some(unit(normal))
 }
@@ -84,8 +78,7 @@ pub(super) fn axis(
     if mesh.dim < 3 && !across {
         let message = "an axis in the plane of the mesh";
         let problem = Problem::new(path, message).found(format!("{axis:?}"));
-        problems.push(problem.accepted(["[0, 0, 1]"]));
-        return None;
+        return problems.refuse(problem.accepted(["[0, 0, 1]"]));
     }
     Some(unit(axis))
 }

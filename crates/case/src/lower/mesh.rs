@@ -56,8 +56,7 @@ pub(super) fn lower(context: &Context, problems: &mut Problems) -> Option<Mesh> 
             return Some(mesh);
         }
         let problem = Problem::new("mesh", "no mesh");
-        problems.push(problem.accepted(["`file`", "`part`", "`generate`"]));
-        return None;
+        return problems.refuse(problem.accepted(["`file`", "`part`", "`generate`"]));
     };
     for (path, name, part) in parts {
         if part.dim != whole.dim {
@@ -100,8 +99,7 @@ fn refined(context: &Context, mut mesh: Mesh, problems: &mut Problems) -> Option
     if times > 0 && nodes > MOST_NODES {
         let problem = Problem::new("mesh.refine", "too many elements");
         let problem = problem.found(format!("about {nodes:.0e} nodes"));
-        problems.push(problem.accepted([format!("at most {MOST_NODES:e} nodes")]));
-        return None;
+        return problems.refuse(problem.accepted([format!("at most {MOST_NODES:e} nodes")]));
     }
     if times > 0 {
         has_room("mesh.refine", nodes, problems)?;
@@ -110,8 +108,7 @@ fn refined(context: &Context, mut mesh: Mesh, problems: &mut Problems) -> Option
         match refine(&mesh) {
             Ok(finer) => mesh = finer,
             Err(error) => {
-                problems.push(Problem::new("mesh.refine", error.to_string()));
-                return None;
+                return problems.refuse(Problem::new("mesh.refine", error.to_string()));
             }
         }
     }
@@ -126,11 +123,10 @@ fn has_room(path: &str, nodes: f64, problems: &mut Problems) -> Option<()> {
     );
     if let Err(short) = room {
         let problem = Problem::new(path, short.to_string());
-        problems.push(Problem {
+        return problems.refuse(Problem {
             lacks_memory: true,
             ..problem.accepted(["fewer elements"])
         });
-        return None;
     }
     Some(())
 }
@@ -178,11 +174,10 @@ fn read(key: &str, folder: &Path, file: &str, scale: f64, problems: &mut Problem
             } else {
                 beside(&path)
             };
-            problems.push(match others.is_empty() {
+            problems.refuse(match others.is_empty() {
                 true => problem,
                 false => problem.unknown(file, others.iter().map(String::as_str)),
-            });
-            None
+            })
         }
     }
 }

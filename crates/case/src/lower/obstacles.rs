@@ -6,10 +6,8 @@ use carom_contact::{
 use carom_mesh::{Mesh, Surface};
 
 use super::context::Context;
-use super::course;
-use super::lookup;
 use super::problems::Problems;
-use super::profiles;
+use super::{course, lookup, profiles};
 use crate::error::Problem;
 use crate::schema::{self, ObstacleMotion};
 
@@ -76,8 +74,7 @@ fn rigid_surface(
         Ok(surface) => Some(RigidSurface::new(mesh, &surface)),
         Err(error) => {
             let problem = Problem::new(path, error.to_string()).found(&given.group);
-            problems.push(problem.accepted(["a group of faces with normals to one side"]));
-            None
+            problems.refuse(problem.accepted(["a group of faces with normals to one side"]))
         }
     }
 }

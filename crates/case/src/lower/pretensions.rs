@@ -11,10 +11,10 @@ use carom_mesh::{ElementId, Mesh};
 
 use super::context::Context;
 use super::discrete;
-use super::layers::{self, solid_of};
-use super::problems::Problems;
+use super::layers::{self, Bolt, solid_of};
+use super::problems::{Problems, Refusal};
 use crate::error::Problem;
-use crate::schema::{Ends, Pretension, Section};
+use crate::schema::{Ends, Section};
 
 /// Bolts between nodes; those of beams and solids are told to their bodies.
 pub(super) fn lower(
@@ -26,44 +26,59 @@ pub(super) fn lower(
     let case = context.case;
     let mut bolts = Vec::new();
     for (name, given) in case.pretension.iter() {
-        let path = format!("pretension.{name}");
-        if !is_tightened_in_time(context, &path, problems) {
+        let bolt = Bolt {
+            name,
+            path: format!("pretension.{name}"),
+            given,
+        };
+        if is_tightened_in_time(context, &bolt, problems).is_none() {
             continue;
         }
-        let of = (name, path.as_str(), given);
         if let Some(ends) = &given.ends {
-            bolts.extend(between_nodes(mesh, of, ends, problems));
+            bolts.extend(between_nodes(mesh, &bolt, ends, problems));
             continue;
         }
         let on = given.on.as_ref().and_then(|on| mesh.groups.get(on));
         let elements = on.map_or(&[][..], |group| &group.elements);
         match solid_of(mesh, bodies, elements) {
-            Some(body) => layers::across_solid(context, (mesh, body), of, elements, problems),
-            None => along_beams(context, mesh, bodies, of, problems),
+            Some(body) => {
+                let tightened = layers::across_solid(context, (mesh, body), &bolt, problems);
+                body.spec.layers.extend(tightened.unwrap_or_default());
+            }
+            None => {
+                let tightened = along_beams(context, mesh, bodies, &bolt, problems);
+                for (body, cell) in tightened.unwrap_or_default() {
+                    bodies[body].spec.tightened.push(cell);
+                }
+            }
         }
     }
     bolts
 }
 
 /// Refuses bolts without a static stage, and in zones.
-fn is_tightened_in_time(context: &Context, path: &str, problems: &mut Problems) -> bool {
-    let (message, accepted) = match (context.case.time.stage, context.plan.zones.is_empty()) {
-        (Some(_), true) => return true,
-        (None, _) => (
-            "a bolt is tightened over a static stage, and the case has none",
-            "static = { end = \"1 s\", steps = 4 } in [time]",
-        ),
-        (Some(_), false) => ("bolts are not tightened in zones", "a case without zones"),
-    };
-    let problem = Problem::new(path, message);
-    problems.push(problem.accepted([accepted]));
-    false
+fn is_tightened_in_time(context: &Context, bolt: &Bolt, problems: &mut Problems) -> Option<()> {
+    let table = [
+        Refusal {
+            is: context.case.time.stage.is_none(),
+            key: "",
+            message: "a bolt is tightened over a static stage, and the case has none",
+            accepted: &["static = { end = \"1 s\", steps = 4 } in [time]"],
+        },
+        Refusal {
+            is: !context.plan.zones.is_empty(),
+            key: "",
+            message: "bolts are not tightened in zones",
+            accepted: &["a case without zones"],
+        },
+    ];
+    problems.refuse_first((&bolt.path, None), &table)
 }
 
 /// A bolt between two nodes, or at each node against the ground.
 fn between_nodes(
     mesh: &mut Mesh,
-    (name, path, given): (&str, &str, &Pretension),
+    Bolt { name, path, given }: &Bolt,
     ends: &Ends,
     problems: &mut Problems,
 ) -> Option<ModelDiscrete> {
@@ -76,12 +91,12 @@ fn between_nodes(
         if along < 0.0 {
             let message = "the axis points from the second end to the first one: the bolt would push its ends apart";
             let problem = Problem::new(format!("{path}.axis"), message);
-            problems.push(problem.accepted(["the direction from the first end to the second one"]));
-            return None;
+            return problems
+                .refuse(problem.accepted(["the direction from the first end to the second one"]));
         }
     }
     Some(ModelDiscrete::new(DiscreteSpec {
-        name: name.to_owned(),
+        name: (*name).to_owned(),
         cells,
         kind: DiscreteKind::Bolt(Tightened {
             link: Link {
@@ -94,55 +109,62 @@ fn between_nodes(
     }))
 }
 
-/// Tells bodies of beams which of their cells are tightened.
+/// Cells of beams that are tightened, with the numbers of their bodies.
 fn along_beams(
     context: &Context,
     mesh: &Mesh,
-    bodies: &mut [ModelBody],
-    (name, path, given): (&str, &str, &Pretension),
+    bodies: &[ModelBody],
+    bolt: &Bolt,
     problems: &mut Problems,
-) {
-    let cells = match (&given.beam, &given.on) {
-        (Some(beam), _) => cells_of_beam(context, &format!("{path}.beam"), bodies, beam, problems),
-        (None, Some(on)) => {
-            cells_of_group(context, (mesh, bodies), &format!("{path}.on"), on, problems)
+) -> Option<Vec<(usize, TightenedCell)>> {
+    let Bolt { path, given, .. } = bolt;
+    let (key, cells) = match (&given.beam, &given.on) {
+        (Some(beam), _) => {
+            let path = format!("{path}.beam");
+            (
+                "beam",
+                cells_of_beam(context, &path, bodies, beam, problems)?,
+            )
         }
-        (None, None) => None,
+        (None, on) => {
+            let path = format!("{path}.on");
+            let on = on.as_ref()?;
+            (
+                "on",
+                cells_of_group(context, (mesh, bodies), &path, on, problems)?,
+            )
+        }
     };
-    let Some(cells) = cells else { return };
     let Some(lines) = lines(mesh, &cells) else {
-        let key = if given.beam.is_some() { "beam" } else { "on" };
         let message =
             "its cells branch or close: which of them are the middles of bolts is not known";
         let problem = Problem::new(format!("{path}.{key}"), message);
-        problems.push(problem.accepted([
+        return problems.refuse(problem.accepted([
             "cells along lines with two ends",
             "`on`, a group of one cell of each bolt",
         ]));
-        return;
     };
+    let mut tightened = Vec::new();
     for (k, line) in lines.iter().enumerate() {
         let cell = line[line.len() / 2];
-        let owner = bodies
-            .iter_mut()
-            .find(|body| body.spec.cells.contains(&cell));
-        let Some(body) = owner else { continue };
-        let mut all = body.spec.tightened.iter();
-        if let Some(other) = all.find(|other| other.cell == cell) {
+        let mut all = bodies.iter();
+        let Some(number) = all.position(|body| body.spec.cells.contains(&cell)) else {
+            continue;
+        };
+        let mut others = bodies[number].spec.tightened.iter();
+        if let Some(other) = others.find(|other| other.cell == cell) {
             let message = format!("`{}` tightens the same cell", other.name);
-            problems.push(Problem::new(path, message));
-            return;
+            return problems.refuse(Problem::new(path, message));
         }
-        body.spec.tightened.push(TightenedCell {
-            name: match lines.len() {
-                1 => name.to_owned(),
-                _ => format!("{name}-{}", k + 1),
-            },
+        let cell = TightenedCell {
+            name: bolt.name_of(k, lines.len()),
             cell,
             force: given.force.0,
             tightens: false,
-        });
+        };
+        tightened.push((number, cell));
     }
+    Some(tightened)
 }
 
 fn cells_of_beam(
@@ -161,8 +183,7 @@ fn cells_of_beam(
             Some(_) => "this body has no beams",
             None => "no body of this name",
         };
-        problems.push(Problem::new(path, message).unknown(beam, beams));
-        return None;
+        return problems.refuse(Problem::new(path, message).unknown(beam, beams));
     }
     may_be_tightened(context, path, body, problems)?;
     Some(body.spec.cells.clone())
@@ -183,12 +204,11 @@ fn cells_of_group(
         let Some(body) = beams.find(|body| body.spec.cells.contains(&cell)) else {
             let message = "a static stage tightens cells of beams, or a section across a solid";
             let problem = Problem::new(path, message).found(on);
-            problems.push(problem.accepted([
+            return problems.refuse(problem.accepted([
                 "a group of cells of a body with `section.beam`",
                 "a group of the cells of a solid between two planes, or of its faces in one",
                 "`ends`, `axis` and `stiffness` between two nodes",
             ]));
-            return None;
         };
         if owners.insert(&body.spec.name) {
             may_be_tightened(context, path, body, problems)?;
@@ -208,28 +228,27 @@ fn may_be_tightened(
         return None;
     };
     let name = &body.spec.name;
-    let given = context.case.body.get(name)?;
-    let (message, accepted) = if section.rotations == Rotations::Finite {
-        (
-            "beams with finite rotations are not tightened",
-            "rotations = \"small\"",
-        )
-    } else if body.spec.material.uniaxial().is_some() {
-        (
-            "beams whose metal flows are not tightened",
-            "an elastic material for the shank",
-        )
-    } else if given.reduction.is_some() {
-        (
-            "a reduced body is not tightened",
-            "a body that is not reduced",
-        )
-    } else {
-        return Some(());
-    };
-    let problem = Problem::new(path, message).found(name.as_str());
-    problems.push(problem.accepted([accepted]));
-    None
+    let table = [
+        Refusal {
+            is: section.rotations == Rotations::Finite,
+            key: "",
+            message: "beams with finite rotations are not tightened",
+            accepted: &["rotations = \"small\""],
+        },
+        Refusal {
+            is: body.spec.material.uniaxial().is_some(),
+            key: "",
+            message: "beams whose metal flows are not tightened",
+            accepted: &["an elastic material for the shank"],
+        },
+        Refusal {
+            is: context.case.body.get(name)?.reduction.is_some(),
+            key: "",
+            message: "a reduced body is not tightened",
+            accepted: &["a body that is not reduced"],
+        },
+    ];
+    problems.refuse_first((path, Some(name)), &table)
 }
 
 fn is_beam(body: &&ModelBody) -> bool {

@@ -153,8 +153,7 @@ fn spectrum(name: &str, probe: &Probe, problems: &mut Problems) -> Option<Spectr
         let path = format!("probe.{name}.response-spectrum.to");
         let message = "the highest frequency is not above the lowest one";
         let problem = Problem::new(path, message).found(format!("{to} Hz"));
-        problems.push(problem.accepted([format!("more than {from} Hz")]));
-        return None;
+        return problems.refuse(problem.accepted([format!("more than {from} Hz")]));
     }
     Some(Spectrum::between(
         [from, to],

@@ -32,8 +32,7 @@ pub(super) fn profile(
     let length = across.iter().map(|a| a * a).sum::<f64>().sqrt();
     if length < 1e-6 {
         let problem = Problem::new(format!("{path}.zero"), "it lies along the axis");
-        problems.push(problem.accepted(["a direction across the axis"]));
-        return None;
+        return problems.refuse(problem.accepted(["a direction across the axis"]));
     }
     let first = across.map(|a| a / length);
     let second = [0, 1, 2].map(|i| {

@@ -109,8 +109,7 @@ fn saved(
         Err(error) if error.kind() == ErrorKind::NotFound => Some(None),
         Err(error) => {
             let message = format!("{name}: {error}");
-            problems.push(Problem::new(format!("{path}.file"), message));
-            None
+            problems.refuse(Problem::new(format!("{path}.file"), message))
         }
     }
 }
@@ -134,8 +133,7 @@ fn kept(
         Source::Made(bytes) => {
             let written = atomic::write(&context.folder.join(file), |to| to.write_all(&bytes));
             if let Err(error) = written {
-                problems.push(Problem::new(format!("{path}.file"), error.to_string()));
-                return None;
+                return problems.refuse(Problem::new(format!("{path}.file"), error.to_string()));
             }
             match existed {
                 true => format!(

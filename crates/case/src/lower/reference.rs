@@ -52,8 +52,7 @@ pub(super) fn lower(
         }),
         Err(message) => {
             let problem = Problem::new(path, format!("the case is not this problem: {message}"));
-            problems.push(problem);
-            None
+            problems.refuse(problem)
         }
     }
 }

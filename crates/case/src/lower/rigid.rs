@@ -126,12 +126,8 @@ pub(super) fn moments(
             3 => "three, about the axes of coordinates",
             _ => "one, about z",
         };
-        problems.push(
-            problem
-                .found(moments.len().to_string())
-                .accepted([accepted]),
-        );
-        return None;
+        let problem = problem.found(moments.len().to_string());
+        return problems.refuse(problem.accepted([accepted]));
     }
     let moments = match moments[..] {
         [x, y, z] => [x.0, y.0, z.0],

@@ -10,34 +10,44 @@ use carom_materials::Law;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
 
 use super::context::Context;
-use super::problems::Problems;
+use super::problems::{Problems, Refusal, with_cells};
 use super::thickness;
 use crate::error::Problem;
 use crate::offenders::Offenders;
 use crate::schema::{self, Body, Section};
 
-/// What a section of shells makes of a body.
-pub(super) struct BuiltShell {
+/// What a section makes of a body.
+pub(super) struct Sectioned {
     pub(super) kinematics: Kinematics,
+    /// Of plies one that flows if any does.
+    pub(super) material: Option<Law>,
     pub(super) plies: Vec<Ply>,
-    /// A material of it, one that flows if any does.
-    pub(super) material: Law,
     /// Thickness at each node of the mesh, m, if it changes.
     pub(super) nodal_thickness: Option<Vec<f64>>,
 }
 
-/// Shells on these cells with this section. `material`: of the body; `path`: of the body.
+/// A section of shells, as a body gives it.
+pub(super) struct GivenShell<'a> {
+    /// Of the body.
+    pub(super) path: &'a str,
+    pub(super) section: &'a schema::ShellSection,
+    /// Of the body.
+    pub(super) material: Law,
+    /// All of the case.
+    pub(super) materials: &'a BTreeMap<String, Law>,
+}
+
+/// Shells on these cells.
 pub(super) fn shell(
     context: &Context,
     (mesh, cells): (&Mesh, &[ElementId]),
-    path: &str,
-    (given, material): (&schema::ShellSection, Law),
-    materials: &BTreeMap<String, Law>,
+    of: &GivenShell,
     problems: &mut Problems,
-) -> Option<BuiltShell> {
-    let plies = plies(path, (given, material), materials, problems)?;
+) -> Option<Sectioned> {
+    let plies = plies(of, problems)?;
+    let (path, given) = (of.path, of.section);
     let laws: Vec<Law> = match plies.is_empty() {
-        true => vec![material],
+        true => vec![of.material],
         false => plies.iter().map(|ply| ply.material).collect(),
     };
     let flows = |law: &&Law| law.plane_stress().is_some();
@@ -51,8 +61,7 @@ pub(super) fn shell(
             "shells have small strains; with rotations = \"finite\" they turn by any angle",
         );
         let accepted = ["elastic", "j2", "j2-table", "johnson-cook"];
-        problems.push(problem.found(rubber.key()).accepted(accepted));
-        return None;
+        return problems.refuse(problem.found(rubber.key()).accepted(accepted));
     }
     let layers = shell_layers(path, given, material, problems)?;
     let rotations = match given.rotations {
@@ -69,10 +78,10 @@ pub(super) fn shell(
         layers,
         ..ShellSection::new(thickness)
     };
-    Some(BuiltShell {
+    Some(Sectioned {
         kinematics: Kinematics::Shell(section),
         plies,
-        material,
+        material: Some(material),
         nodal_thickness,
     })
 }
@@ -107,18 +116,13 @@ fn shell_layers(
         ),
     };
     let problem = Problem::new(format!("{path}.section.shell.layers"), message);
-    problems.push(problem.found(found).accepted([accepted]));
-    None
+    problems.refuse(problem.found(found).accepted([accepted]))
 }
 
 /// The plies of a section; none of one material.
-fn plies(
-    path: &str,
-    (given, material): (&schema::ShellSection, Law),
-    materials: &BTreeMap<String, Law>,
-    problems: &mut Problems,
-) -> Option<Vec<Ply>> {
-    let path = format!("{path}.section.shell");
+fn plies(of: &GivenShell, problems: &mut Problems) -> Option<Vec<Ply>> {
+    let (given, materials) = (of.section, of.materials);
+    let path = format!("{}.section.shell", of.path);
     thickness::one_thickness(&path, given, problems)?;
     let Some(plies) = &given.plies else {
         return Some(Vec::new());
@@ -126,12 +130,11 @@ fn plies(
     let mut all = Vec::with_capacity(plies.len());
     for (number, ply) in plies.iter().enumerate() {
         let named = ply.material.as_ref();
-        let Some(&law) = named.map_or(Some(&material), |name| materials.get(name)) else {
+        let Some(&law) = named.map_or(Some(&of.material), |name| materials.get(name)) else {
             let at = format!("{path}.plies[{number}].material");
             let problem = Problem::new(at, "no material of this name");
             let found = ply.material.as_deref().unwrap_or_default();
-            problems.push(problem.unknown(found, materials.keys().map(String::as_str)));
-            return None;
+            return problems.refuse(problem.unknown(found, materials.keys().map(String::as_str)));
         };
         all.push(Ply {
             material: law,
@@ -155,13 +158,7 @@ pub(super) fn sound_shells(
         let name = &body.spec.name;
         let found = shell_defects(mesh, &body.spec.cells);
         sound &= found.is_empty();
-        refuse_cells(
-            context,
-            mesh,
-            (&format!("body.{name}.region"), name),
-            &found,
-            problems,
-        );
+        refuse_cells(context, mesh, name, &found, problems);
     }
     let all: Vec<ElementId> = shell_cells(bodies);
     if sound && shells.len() > 1 {
@@ -171,23 +168,16 @@ pub(super) fn sound_shells(
             shells.iter().find(has)
         });
         if let Some(body) = owner {
-            let name = &body.spec.name;
-            refuse_cells(
-                context,
-                mesh,
-                (&format!("body.{name}.region"), name),
-                &found,
-                problems,
-            );
+            refuse_cells(context, mesh, &body.spec.name, &found, problems);
         }
     }
 }
 
-/// A problem with all cells that no shell can be on.
+/// A problem with all cells of a body that no shell can be on.
 fn refuse_cells(
     context: &Context,
     mesh: &Mesh,
-    (path, name): (&str, &str),
+    name: &str,
     found: &[ShellDefect],
     problems: &mut Problems,
 ) {
@@ -212,40 +202,38 @@ fn refuse_cells(
     );
     let cells: Vec<ElementId> = found.iter().map(|defect| defect.cell).collect();
     let offenders = Offenders::new(format!("shell-{name}"), mesh, &cells);
-    let file = offenders.path(&context.file);
-    let note = format!(
-        "`carom check --cells` writes the cells to {}",
-        file.display()
-    );
     let accepted = "flat convex cells, all of a shell with their normals to the same side";
-    let problem = Problem::new(path, message).accepted([accepted]).note(note);
-    problems.push(Problem {
-        offenders: Some(offenders),
-        ..problem
-    });
+    let problem = Problem::new(format!("body.{name}.region"), message).accepted([accepted]);
+    problems.push(with_cells(problem, offenders, context.file));
 }
 
 /// Refuses keys that shells do not take.
 pub(super) fn suits_shells(path: &str, body: &Body, problems: &mut Problems) {
-    if let Some(Section::Shell(section)) = &body.section
-        && matches!(body.formulation, schema::Formulation::With(_))
-        && section.rotations == schema::Rotations::Small
-    {
-        let message = "shells with one point have finite rotations";
-        let problem = Problem::new(format!("{path}.formulation"), message);
-        problems
-            .push(problem.accepted(["section.shell.rotations = \"finite\"", "no `formulation`"]));
-    }
-    if is_shell(body) && body.rigid.is_some() {
-        let message = "a rigid body of shells has no cells from which its inertia follows";
-        let problem = Problem::new(format!("{path}.rigid"), message);
-        problems.push(problem.accepted(["a rigid body of solid cells", "no `rigid`"]));
-    }
-    if is_shell(body) && body.reduction.is_some() {
-        let message = "shells are not reduced";
-        let problem = Problem::new(format!("{path}.reduction"), message);
-        problems.push(problem.accepted(["solids and beams", "no `reduction`"]));
-    }
+    let Some(Section::Shell(section)) = &body.section else {
+        return;
+    };
+    let one_point = matches!(body.formulation, schema::Formulation::With(_));
+    let table = [
+        Refusal {
+            is: one_point && section.rotations == schema::Rotations::Small,
+            key: "formulation",
+            message: "shells with one point have finite rotations",
+            accepted: &["section.shell.rotations = \"finite\"", "no `formulation`"],
+        },
+        Refusal {
+            is: body.rigid.is_some(),
+            key: "rigid",
+            message: "a rigid body of shells has no cells from which its inertia follows",
+            accepted: &["a rigid body of solid cells", "no `rigid`"],
+        },
+        Refusal {
+            is: body.reduction.is_some(),
+            key: "reduction",
+            message: "shells are not reduced",
+            accepted: &["solids and beams", "no `reduction`"],
+        },
+    ];
+    problems.refuse_each(path, &table);
 }
 
 /// The surface around a group of cells of shells, at half their thickness on both sides and around their edges. None if the group is anything

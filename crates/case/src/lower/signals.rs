@@ -298,8 +298,7 @@ fn find(context: &Context, path: &str, name: &str, problems: &mut Problems) -> O
             let names: Vec<String> = context.signals.courses.keys().cloned().collect();
             let problem = Problem::new(path, "no signal of this name in the case");
             let names = names.iter().map(String::as_str);
-            problems.push(problem.unknown(name, names));
-            None
+            problems.refuse(problem.unknown(name, names))
         }
     }
 }

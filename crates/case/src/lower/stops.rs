@@ -8,10 +8,8 @@ use carom_mesh::{ElementId, Mesh, Surface};
 use super::context::Context;
 use super::discrete::{self, End};
 use super::laws::{default_capture, no_curve};
-use super::lookup;
-use super::obstacles;
 use super::problems::Problems;
-use super::zones;
+use super::{lookup, obstacles, zones};
 use crate::error::Problem;
 use crate::schema::{Force, Friction, Length, Scheme, Stop};
 
@@ -115,8 +113,7 @@ fn facing(
                 let message = "an obstacle is the place and shape of the ground";
                 let problem = Problem::new(format!("{path}.ends"), message);
                 let accepted = "a group of one node and `ground`";
-                problems.push(problem.accepted([accepted]));
-                return None;
+                return problems.refuse(problem.accepted([accepted]));
             }
         };
         return Some(Facing {
@@ -227,10 +224,7 @@ fn stop_law(path: &str, stop: &Stop, scheme: &Scheme, problems: &mut Problems) -
     };
     match law {
         Ok(law) => discrete::acts_at_a_point(path, &law, problems).then_some(law),
-        Err(error) => {
-            problems.push(no_curve(&at, &error));
-            None
-        }
+        Err(error) => problems.refuse(no_curve(&at, &error)),
     }
 }
 

@@ -5,12 +5,10 @@ use std::collections::BTreeMap;
 use carom_dynamics::{Amplitude, NamedSupport, Prescribed, PrescribedTurn, Support};
 use carom_mesh::Mesh;
 
-use super::beams;
 use super::context::Context;
-use super::course;
 use super::lookup::{self, AXES};
 use super::problems::Problems;
-use super::signals;
+use super::{beams, course, signals};
 use crate::error::Problem;
 use crate::schema::{Case, Movement, MovementCourse};
 

@@ -51,8 +51,7 @@ pub(super) fn contact_surface(
         Ok(surface) => Some(surface),
         Err(error) => {
             let problem = Problem::new(path, error.to_string()).found(name);
-            problems.push(problem.accepted(["lines and points of beams"]));
-            None
+            problems.refuse(problem.accepted(["lines and points of beams"]))
         }
     }
 }
@@ -63,11 +62,8 @@ fn has_surface(axes: &Axes, problems: &mut Problems) -> bool {
     if axes.section.offset != [0.0; 2] {
         let message = "contacts of beams whose axis is beside their nodes are not available";
         let problem = Problem::new(format!("{path}.offset"), message);
-        problems.push(
-            problem
-                .found(format!("{:?} m", axes.section.offset))
-                .accepted(["no `offset`", "a stop between nodes"]),
-        );
+        let problem = problem.found(format!("{:?} m", axes.section.offset));
+        problems.push(problem.accepted(["no `offset`", "a stop between nodes"]));
         return false;
     }
     if axes.section.radius.is_none() {

@@ -98,10 +98,7 @@ fn assembled(
             zoned,
             apart,
         }),
-        Err(error) => {
-            problems.push(refused::refused_zones(context, &error));
-            None
-        }
+        Err(error) => problems.refuse(refused::refused_zones(context, &error)),
     }
 }
 

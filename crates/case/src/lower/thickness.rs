@@ -44,8 +44,7 @@ pub(super) fn one_thickness(
         }
         (Some(_), None) => return Some(()),
     };
-    problems.push(problem);
-    None
+    problems.refuse(problem)
 }
 
 /// The largest thickness of a section of one material, m, and that at each node of the mesh, if it changes. `path`: of the body.
@@ -88,8 +87,7 @@ fn taper(
     if to <= from {
         let problem = Problem::new(format!("{path}.to"), "a taper that ends before it begins");
         let problem = problem.found(format!("{to} m"));
-        problems.push(problem.accepted([format!("above {from} m")]));
-        return None;
+        return problems.refuse(problem.accepted([format!("above {from} m")]));
     }
     let at = |x: &[f64; 3]| {
         let place: f64 = x.iter().zip(&along).map(|(x, a)| x * a).sum();
@@ -133,12 +131,8 @@ fn thickness_file(
             lines[k]
         );
         let problem = Problem::new(format!("{path}.thickness"), message);
-        problems.push(
-            problem
-                .found(format!("{} m", rows[k][3]))
-                .accepted(["> 0 m"]),
-        );
-        return None;
+        let problem = problem.found(format!("{} m", rows[k][3]));
+        return problems.refuse(problem.accepted(["> 0 m"]));
     }
     let mut nodes: Vec<u32> = cells
         .iter()
@@ -165,8 +159,7 @@ fn thickness_file(
         without.len()
     );
     let problem = Problem::new(format!("{path}.file"), message);
-    problems.push(problem.accepted(["a line at the place of each node of the body"]));
-    None
+    problems.refuse(problem.accepted(["a line at the place of each node of the body"]))
 }
 
 /// Diagonal of the box around some nodes, m.

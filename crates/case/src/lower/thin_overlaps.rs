@@ -1,55 +1,44 @@
 //! Overlaps of beams or shells and solids.
 
+use carom_arlequin::Rows;
 use carom_bodies::{Formulation, Kinematics, Rotations};
 use carom_dynamics::ModelBody;
-use carom_mesh::{ElementId, Mesh};
+use carom_mesh::ElementId;
 use carom_zones::{Error, Glued, glue_thin};
 
-use super::context::Context;
-use super::held::Held;
-use super::joints::{self, BuiltOverlap, FEW_LAYERS, Joints, is_thin, weigh, weighting};
-use super::problems::Problems;
+use super::joints::{self, BuiltOverlap, FEW_LAYERS, Joint, Joints, is_thin, weigh, weighting};
+use super::problems::{Problems, Refusal};
 use super::unfit::{self, doubt};
 use crate::error::Problem;
 use crate::schema::{self, Bracket, BracketName, Mediator};
 
 /// One overlap of a beam or shell and a solid: its rows, with cells and weights of the two bodies changed.
 pub(super) fn thin_overlap(
-    context: &Context,
-    (name, given): (&str, &schema::Arlequin),
-    mesh: &Mesh,
+    joint: &Joint,
+    given: &schema::Arlequin,
     bodies: &mut [ModelBody],
-    ([inner, outer], held): ([usize; 2], &Held),
     joints: &mut Joints,
     problems: &mut Problems,
-) -> Option<carom_arlequin::Rows> {
-    let path = format!("arlequin.{name}");
-    let pair = [(&given.inner, inner), (&given.outer, outer)];
-    let thin = usize::from(is_thin(&bodies[outer]));
-    suits_a_solid(&path, given, bodies, (pair, thin), problems)?;
-    let region = joints::region(mesh, &path, &given.overlap, problems)?;
+) -> Option<Rows> {
+    let (mesh, name, path) = (joint.mesh, joint.name, &joint.path);
+    let [inner, outer] = joint.bodies;
+    // which of both is thin
+    let k = usize::from(is_thin(&bodies[outer]));
+    let [thin, solid] = [k, 1 - k].map(|k| joint.bodies[k]);
+    suits_a_solid(path, given, k, [&bodies[thin], &bodies[solid]], problems)?;
+    let region = joints::region(mesh, path, &given.overlap, problems)?;
     let specs = [&bodies[inner].spec, &bodies[outer].spec];
     let glued = match glue_thin(mesh, specs, &region, &weighting(given.weights)) {
         Ok(glued) => glued,
         Err(Error::Overlap(error)) => {
             let all = specs.map(|spec| spec.cells.clone()).concat();
-            let problem = unfit::unfit(context, (&path, name), mesh, &error, &all);
-            problems.push(problem);
-            return None;
+            return problems.refuse(unfit::unfit(joint, &error, &all));
         }
         Err(error) => {
-            problems.push(Problem::new(path, error.to_string()));
-            return None;
+            return problems.refuse(Problem::new(path, error.to_string()));
         }
     };
-    no_hinges(
-        context,
-        &path,
-        (name, mesh),
-        &bodies[pair[thin].1],
-        &glued,
-        problems,
-    )?;
+    no_hinges(joint, &bodies[thin], &glued, problems)?;
     let built = BuiltOverlap {
         name: name.to_string(),
         measure: glued.measure,
@@ -58,11 +47,11 @@ pub(super) fn thin_overlap(
         removed: glued.removed.len(),
     };
     let all = [&glued.touched[..], &glued.removed].concat();
-    joints::enter(context, mesh, built, all, joints, problems)?;
+    joints::enter(joint, built, all, joints, problems)?;
     for warning in &glued.weights.warnings {
         problems.warn(format!("overlap `{name}`: {}", doubt(warning)));
     }
-    let solid = &bodies[pair[1 - thin].1].spec;
+    let solid = &bodies[solid].spec;
     let poisson = solid.material.initial().poisson;
     if matches!(solid.kinematics, Kinematics::PlaneStrain { .. }) && poisson != 0.0 {
         problems.warn(format!(
@@ -82,14 +71,7 @@ pub(super) fn thin_overlap(
         bodies[body].spec.exact_products = true;
     }
     let mut rows = glued.rows;
-    let dropped = held.drop_rows(&mut rows);
-    unfit::name_rows(
-        name,
-        mesh,
-        &dropped,
-        "removed: supports hold both bodies there",
-        problems,
-    );
+    unfit::drop_held(joint, &mut rows, problems);
     Some(rows)
 }
 
@@ -97,33 +79,45 @@ pub(super) fn thin_overlap(
 fn suits_a_solid(
     path: &str,
     given: &schema::Arlequin,
-    bodies: &[ModelBody],
-    (pair, thin): ([(&String, usize); 2], usize),
+    k: usize,
+    [thin, solid]: [&ModelBody; 2],
     problems: &mut Problems,
 ) -> Option<()> {
-    let (name, body) = pair[thin];
-    let (other, solid) = pair[1 - thin];
-    let keys = ["inner", "outer"].map(|key| format!("{path}.{key}"));
-    let thin_body = Thin::of(&bodies[body])?;
-    let refused = thin_body
-        .refuse_other((&keys[1 - thin], other), &bodies[solid])
-        .or_else(|| thin_body.refuse_own((&keys[thin], name), &bodies[body]))
-        .or_else(|| refuse_turns((&keys[1 - thin], other), [&bodies[body], &bodies[solid]]))
-        .or_else(|| thin_body.refuse_choice(path, given));
-    match refused {
-        None => Some(()),
-        Some(problem) => {
-            problems.push(problem);
-            None
-        }
+    let sides = [("inner", &given.inner), ("outer", &given.outer)];
+    let [own, other] = [k, 1 - k].map(|k| (format!("{path}.{}", sides[k].0), sides[k].1));
+    let kind = Thin::of(thin)?;
+    let refused = kind
+        .refuse_other((&other.0, other.1), solid)
+        .or_else(|| kind.refuse_own((&own.0, own.1), thin))
+        .or_else(|| refuse_turns((&other.0, other.1), [thin, solid]));
+    if let Some(problem) = refused {
+        return problems.refuse(problem);
     }
+    let thin = kind.name();
+    let table = [
+        Refusal {
+            is: given.mediator != Mediator::Coarser,
+            key: "mediator",
+            message: &format!(
+                "between a {thin} and a solid the multiplier has the kinematics of the {thin}"
+            ),
+            accepted: &["\"coarser\""],
+        },
+        Refusal {
+            is: given.bracket != Bracket::Named(BracketName::L2),
+            key: "bracket",
+            message: &format!(
+                "between a {thin} and a solid the product with strains would hold the warping of sections"
+            ),
+            accepted: &["\"l2\""],
+        },
+    ];
+    problems.refuse_first((path, None), &table)
 }
 
 /// Refuses hinges in an overlap, whose sections move otherwise than the nodes.
 fn no_hinges(
-    context: &Context,
-    path: &str,
-    (name, mesh): (&str, &Mesh),
+    joint: &Joint,
     beam: &ModelBody,
     glued: &Glued,
     problems: &mut Problems,
@@ -135,14 +129,10 @@ fn no_hinges(
     if inside.is_empty() {
         return Some(());
     }
-    let problem = Problem::new(
-        format!("{path}.overlap"),
-        "a hinge of the beam in the overlap",
-    )
-    .accepted(["hinges outside the overlap"]);
-    let problem = unfit::shown(context, problem, (name, mesh), &inside);
-    problems.push(problem);
-    None
+    let message = "a hinge of the beam in the overlap";
+    let problem = Problem::new(format!("{}.overlap", joint.path), message);
+    let problem = problem.accepted(["hinges outside the overlap"]);
+    problems.refuse(joint.shown(problem, &inside))
 }
 
 /// Kinds of thin bodies.
@@ -216,26 +206,6 @@ impl Thin {
             let message = format!("a {thin} of metal that flows cannot be glued in volume");
             let accepted = format!("a {thin} of an elastic material, with the metal in the solid");
             return Some(problem(message).accepted([accepted]));
-        }
-        None
-    }
-
-    /// Refuses mediators and brackets that the kinematics of the thin body exclude.
-    fn refuse_choice(self, path: &str, given: &schema::Arlequin) -> Option<Problem> {
-        let thin = self.name();
-        if given.mediator != Mediator::Coarser {
-            let message = format!(
-                "between a {thin} and a solid the multiplier has the kinematics of the {thin}"
-            );
-            let problem = Problem::new(format!("{path}.mediator"), message);
-            return Some(problem.accepted(["\"coarser\""]));
-        }
-        if given.bracket != Bracket::Named(BracketName::L2) {
-            let message = format!(
-                "between a {thin} and a solid the product with strains would hold the warping of sections"
-            );
-            let problem = Problem::new(format!("{path}.bracket"), message);
-            return Some(problem.accepted(["\"l2\""]));
         }
         None
     }

@@ -34,8 +34,7 @@ pub(super) fn tied(
         .any(|node| other.nodes.binary_search(node).is_ok())
     {
         let accepted = "surfaces of two bodies with nodes of their own";
-        problems.push(refuse("these surfaces have common nodes", accepted));
-        return None;
+        return problems.refuse(refuse("these surfaces have common nodes", accepted));
     }
     let parent = one.faces.first().map(|face| face.parent)?;
     let body = bodies
@@ -46,11 +45,10 @@ pub(super) fn tied(
     });
     if rows.rows.is_empty() {
         let accepted = "two surfaces that lie on each other";
-        problems.push(refuse(
+        return problems.refuse(refuse(
             "these surfaces are nowhere opposite to each other",
             accepted,
         ));
-        return None;
     }
     let (gap, most) = (
         gap(mesh, &rows),
@@ -60,8 +58,7 @@ pub(super) fn tied(
         let message = format!("these surfaces are {gap:.4e} m apart");
         let accepted =
             format!("surfaces that lie on each other, within {most:.4e} m (a quarter of a face)");
-        problems.push(refuse(&message, &accepted));
-        return None;
+        return problems.refuse(refuse(&message, &accepted));
     }
     Some(ModelConstraint::of_rows(name, &rows.rows, mesh.dim))
 }

@@ -3,17 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use carom_arlequin::{Error, Rows, trace};
-use carom_dynamics::ModelBody;
-use carom_mesh::{Mesh, Surface};
+use carom_dynamics::{ModelBody, ModelLink};
+use carom_mesh::{ElementId, Mesh, Surface};
 use carom_zones::mortar_rows;
 
 use super::context::Context;
 use super::held::Held;
-use super::joints::{self, Joints};
-use super::lookup;
+use super::joints::Joint;
 use super::plan::Plan;
 use super::problems::{Problems, plural};
-use super::unfit;
+use super::{lookup, unfit};
 use crate::error::Problem;
 
 /// Largest distance of nodes at the same place, as a part of the size of the mesh.
@@ -140,127 +139,90 @@ impl<'a> Ties<'a> {
 }
 
 /// The rows between nodes at the same place, without those that are tied already.
-fn nodes_tied(
-    path: &str,
-    name: &str,
-    [inner, outer]: [usize; 2],
-    ties: &mut Ties,
-    problems: &mut Problems,
-) -> Option<Rows> {
+fn nodes_tied(joint: &Joint, ties: &mut Ties, problems: &mut Problems) -> Option<Rows> {
+    let [inner, outer] = joint.bodies;
     let mut rows = match ties.rows(inner, outer) {
         Ok(rows) => rows,
         Err(error) => {
-            let problem = Problem::new(path, error.to_string());
-            problems.push(problem.accepted([
+            let problem = Problem::new(&joint.path, error.to_string());
+            return problems.refuse(problem.accepted([
                 "two bodies with nodes at the same places",
                 "surfaces = [...], whose nodes need not match",
             ]));
-            return None;
         }
     };
     let known = ties.join([inner, outer], &mut rows);
-    unfit::name_rows(
-        name,
-        ties.mesh,
-        &known,
-        "removed: other interfaces tie them already",
-        problems,
-    );
+    let what = "removed: other interfaces tie them already";
+    unfit::name_rows(joint, &known, what, problems);
     Some(rows)
 }
 
 /// The rows between two surfaces whose nodes need not match.
 fn mortar(
-    path: &str,
+    joint: &Joint,
     names: &[String; 2],
-    sides: [usize; 2],
     ties: &mut Ties,
     problems: &mut Problems,
 ) -> Option<Rows> {
-    let path = format!("{path}.surfaces");
-    let bodies = ties.bodies;
-    let mut surface = |k: usize| {
-        let cells = &bodies[sides[k]].spec.cells;
-        lookup::surface(
-            ties.mesh,
-            cells,
-            &format!("{path}[{k}]"),
-            &names[k],
-            problems,
-        )
+    let path = format!("{}.surfaces", joint.path);
+    let (mesh, [inner, outer]) = (joint.mesh, joint.bodies.map(|body| &ties.bodies[body].spec));
+    let mut surface = |k: usize, cells: &[ElementId]| {
+        lookup::surface(mesh, cells, &format!("{path}[{k}]"), &names[k], problems)
     };
-    let (inner, outer) = (surface(0), surface(1));
-    let surfaces = [inner?, outer?];
-    let kinematics = bodies[sides[0]].spec.kinematics;
-    let rows = mortar_rows(ties.mesh, &surfaces[0], &surfaces[1], |x| {
+    let (one, other) = (surface(0, &inner.cells), surface(1, &outer.cells));
+    let surfaces = [one?, other?];
+    let kinematics = inner.kinematics;
+    let rows = mortar_rows(mesh, &surfaces[0], &surfaces[1], |x| {
         kinematics.surface_factor(x)
     });
     if rows.rows.is_empty() {
         let message = "these surfaces are nowhere opposite to each other";
         let problem = Problem::new(path, message).found(names.join(" and "));
-        problems.push(problem.accepted(["two surfaces that face each other"]));
-        return None;
+        return problems.refuse(problem.accepted(["two surfaces that face each other"]));
     }
-    ties.join_surfaces(sides, &surfaces);
+    ties.join_surfaces(joint.bodies, &surfaces);
     Some(rows)
 }
 
-/// The borders where zones are tied.
+/// The links of the borders where zones are tied.
 pub(super) fn borders(
     context: &Context,
     mesh: &Mesh,
     bodies: &[ModelBody],
     held: &Held,
-    joints: &mut Joints,
     problems: &mut Problems,
-) {
-    let case = context.case;
-    let mut ties = Ties::new(mesh, bodies, &context.plan);
-    for (name, given) in case.interface.iter() {
+) -> Vec<ModelLink> {
+    let mut links = Vec::new();
+    let mut ties = Ties::new(mesh, bodies, context.plan);
+    for (name, given) in context.case.interface.iter() {
         let path = format!("interface.{name}");
-        let (Some(inner), Some(outer)) = (
-            lookup::body(
-                context.case,
-                &format!("{path}.inner"),
-                &given.inner,
-                problems,
-            ),
-            lookup::body(
-                context.case,
-                &format!("{path}.outer"),
-                &given.outer,
-                problems,
-            ),
-        ) else {
+        let names = [&given.inner[..], &given.outer];
+        let Some(bodies) = Joint::bodies(context, &path, names, problems) else {
             continue;
         };
-        let sides = [inner, outer];
+        let joint = Joint {
+            context,
+            mesh,
+            held,
+            name,
+            path,
+            bodies,
+        };
         let found = match &given.surfaces {
-            Some(surfaces) => mortar(&path, surfaces, sides, &mut ties, problems),
-            None => nodes_tied(&path, name, sides, &mut ties, problems),
+            Some(surfaces) => mortar(&joint, surfaces, &mut ties, problems),
+            None => nodes_tied(&joint, &mut ties, problems),
         };
         let Some(mut rows) = found else { continue };
-        let dropped = held.drop_rows(&mut rows);
-        unfit::name_rows(
-            name,
-            mesh,
-            &dropped,
-            "removed: supports hold both bodies there",
-            problems,
-        );
-        joints::link(context, name, (&given.inner, &given.outer), rows, joints);
+        unfit::drop_held(&joint, &mut rows, problems);
+        links.extend(joint.link(rows));
     }
-    for (bodies, nodes) in ties.loose() {
+    for ([one, other], nodes) in ties.loose() {
+        let count = plural(nodes.len(), "node");
         let message = format!(
-            "the bodies `{}` and `{}` share {} and are in two zones, which nothing ties",
-            bodies[0],
-            bodies[1],
-            plural(nodes.len(), "node")
+            "the bodies `{one}` and `{other}` share {count} and are in two zones, which nothing ties"
         );
-        let accepted = format!(
-            "[interface.<name>] with inner = \"{}\", outer = \"{}\"",
-            bodies[0], bodies[1]
-        );
+        let accepted = format!("[interface.<name>] with inner = \"{one}\", outer = \"{other}\"");
         problems.push(Problem::new("zone", message).accepted([accepted]));
     }
+    links
 }

@@ -45,22 +45,16 @@ pub(super) fn schemes(context: &Context, problems: &mut Problems) {
         && outer.iter().all(|scheme| !scheme.get().is_explicit())
     {
         let problem = Problem::new(path, "only an explicit scheme has a critical step");
-        problems.push(
-            problem
-                .found(scheme.name())
-                .accepted(["step = { courant = ... }", "a fixed step"]),
-        );
+        let problem = problem.found(scheme.name());
+        problems.push(problem.accepted(["step = { courant = ... }", "a fixed step"]));
     }
     for (number, (name, body)) in context.case.body.iter().enumerate() {
         let scheme = context.scheme_of(number);
         if scheme.get().needs_lumped_mass() && body.mass == Some(Mass::Consistent) {
             let message = "the scheme divides by the mass: it must be diagonal";
             let problem = Problem::new(format!("body.{name}.mass"), message);
-            problems.push(
-                problem
-                    .found(format!("consistent with {}", scheme.get().name()))
-                    .accepted(["lumped"]),
-            );
+            let problem = problem.found(format!("consistent with {}", scheme.get().name()));
+            problems.push(problem.accepted(["lumped"]));
         }
     }
 }
@@ -81,27 +75,18 @@ pub(super) fn laws(context: &Context, scheme_of: impl Fn(&str) -> Scheme, proble
         if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
             let message = "the contact impulses of this scheme act on the velocity at the end of the step: the scheme needs a law in the rate";
             let problem = Problem::new(format!("contact.{name}.law"), message);
-            problems.push(
-                problem
-                    .found(format!("a law in the gap with {}", scheme.name()))
-                    .accepted(["velocity", "compliance", "restitution"]),
-            );
+            let problem = problem.found(format!("a law in the gap with {}", scheme.name()));
+            problems.push(problem.accepted(["velocity", "compliance", "restitution"]));
         } else if level == Level::Gap {
             let message = "in an explicit scheme the displacement at the end of the step does not depend on the contact force: this law is impossible";
             let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
-            problems.push(
-                problem
-                    .found(format!("displacement with {}", scheme.name()))
-                    .accepted(["velocity", "damped"]),
-            );
+            let problem = problem.found(format!("displacement with {}", scheme.name()));
+            problems.push(problem.accepted(["velocity", "damped"]));
         } else {
             let message = "the contact forces of this scheme act on the displacement at the end of the step: the scheme needs the displacement law";
             let problem = Problem::new(format!("contact.{name}.law"), message);
-            problems.push(
-                problem
-                    .found(format!("another law with {}", scheme.name()))
-                    .accepted(["displacement"]),
-            );
+            let problem = problem.found(format!("another law with {}", scheme.name()));
+            problems.push(problem.accepted(["displacement"]));
         }
     }
 }
@@ -132,14 +117,12 @@ pub(super) fn step(
     if !(dt > 0.0 && dt.is_finite()) || steps > MOST_STEPS {
         let problem = Problem::new(path, "the run would never end")
             .found(format!("{:.3e} steps of {dt:.3e} s", duration / dt));
-        problems.push(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
-        return None;
+        return problems.refuse(problem.accepted([format!("at most {MOST_STEPS:e} steps")]));
     }
     if steps == 0 {
         let problem = Problem::new("time.end", "the run ends before its first step")
             .found(format!("{duration:e} s"));
-        problems.push(problem.accepted([format!("at least one step of {dt:e} s")]));
-        return None;
+        return problems.refuse(problem.accepted([format!("at least one step of {dt:e} s")]));
     }
     Some(dt)
 }
@@ -177,11 +160,8 @@ pub(super) fn adaptive(
             "time.step.adaptive.smallest",
             "the smallest step must be positive and at most the largest",
         );
-        problems.push(
-            problem
-                .found(format!("{smallest:e} s"))
-                .accepted([format!("at most {largest:e} s")]),
-        );
+        let problem = problem.found(format!("{smallest:e} s"));
+        problems.push(problem.accepted([format!("at most {largest:e} s")]));
     }
     Some(Adaptive {
         smallest,
@@ -210,10 +190,7 @@ fn critical(
             let steps = outer.map(|(_, system)| system.critical_step());
             Some(steps.fold(f64::INFINITY, f64::min))
         }
-        Err(error) => {
-            problems.push(refused::refused_zones(context, &error));
-            None
-        }
+        Err(error) => problems.refuse(refused::refused_zones(context, &error)),
     }
 }
 

@@ -6,12 +6,10 @@ use carom_dynamics::{ModelBody, ModelConstraint, ModelLink};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh, Surface};
 
-use super::beams;
 use super::context::Context;
-use super::lookup;
 use super::problems::Problems;
-use super::tied;
 use super::turning::{SMALL_TURNS, any_angle};
+use super::{beams, lookup, tied};
 use crate::error::Problem;
 use crate::schema::TransitionMotion;
 
@@ -156,8 +154,7 @@ fn mean_rows(
         Err(error) => {
             let problem = Problem::new(given.path_of("face"), error.to_string());
             let problem = problem.found(given.face);
-            problems.push(problem.accepted(["faces that are not on one line"]));
-            None
+            problems.refuse(problem.accepted(["faces that are not on one line"]))
         }
     }
 }
@@ -210,8 +207,7 @@ fn end_on(
     if turning.binary_search(&end).is_err() {
         let message = "the node at the end of a transition must have rotations";
         let problem = Problem::new(given.path_of("end"), message).found(given.end);
-        problems.push(problem.accepted(["a node of a beam"]));
-        return None;
+        return problems.refuse(problem.accepted(["a node of a beam"]));
     }
     apart_from_face(&[end], &face, given, problems)?;
     Some(match given.motion {
@@ -252,8 +248,7 @@ fn edge_on(
         Err(error) => {
             let problem = Problem::new(given.path_of("face"), error.to_string());
             let accepted = "the side of a solid along the edge, as high as the shell is thick";
-            problems.push(problem.found(given.face).accepted([accepted]));
-            None
+            problems.refuse(problem.found(given.face).accepted([accepted]))
         }
     }
 }
@@ -276,8 +271,7 @@ fn edge(
             Ok(plates) => all.extend(spec.cells.iter().copied().zip(plates)),
             Err(error) => {
                 let path = format!("body.{}", spec.name);
-                problems.push(Problem::new(path, error.to_string()));
-                return None;
+                return problems.refuse(Problem::new(path, error.to_string()));
             }
         }
     }
@@ -319,6 +313,5 @@ fn apart_from_face(
     }
     let message = "the node belongs to the face: a transition joins bodies without common nodes";
     let problem = Problem::new(given.path_of("end"), message).found(given.end);
-    problems.push(problem.accepted(["a beam or a shell with nodes of its own"]));
-    None
+    problems.refuse(problem.accepted(["a beam or a shell with nodes of its own"]))
 }

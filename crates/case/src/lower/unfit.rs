@@ -4,11 +4,9 @@ use carom_arlequin::{Error, Rows, Warning};
 use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh};
 
-use super::context::Context;
-use super::held::Held;
+use super::joints::Joint;
 use super::problems::{Problems, plural};
 use crate::error::Problem;
-use crate::offenders::Offenders;
 
 /// Least eigenvalue of the Gram matrix of the rows, each of length one, below which they count as dependent: the
 /// multipliers would keep less than half of their digits.
@@ -17,16 +15,9 @@ const LEAST_RANK: f64 = 1e-8;
 const LISTED: usize = 3;
 
 /// Refuses rows that are dependent on the unknowns that are free.
-pub(super) fn full_rank(
-    context: &Context,
-    path: &str,
-    mesh: &Mesh,
-    bodies: &[ModelBody],
-    rows: &Rows,
-    held: &Held,
-    problems: &mut Problems,
-) {
-    let rank = match rows.rank(|node, component| held.has(node, component)) {
+pub(super) fn full_rank(joint: &Joint, bodies: &[ModelBody], rows: &Rows, problems: &mut Problems) {
+    let (path, mesh) = (&joint.path, joint.mesh);
+    let rank = match rows.rank(|node, component| joint.held.has(node, component)) {
         Ok(rank) => rank,
         Err(error) => {
             problems.push(Problem::new(path, error.to_string()));
@@ -53,19 +44,11 @@ pub(super) fn full_rank(
     let cells = bodies.iter().flat_map(|body| &body.spec.cells);
     let around = cells.filter(|&&cell| mesh.element_nodes(cell).contains(&node));
     let around: Vec<ElementId> = around.copied().collect();
-    let name = path.rsplit('.').next().unwrap_or(path);
-    let problem = shown(context, problem, (name, mesh), &around);
-    problems.push(problem);
+    problems.push(joint.shown(problem, &around));
 }
 
 /// The problem behind an error of an overlap. `all`: cells of both bodies.
-pub(super) fn unfit(
-    context: &Context,
-    (path, name): (&str, &str),
-    mesh: &Mesh,
-    error: &Error,
-    all: &[ElementId],
-) -> Problem {
+pub(super) fn unfit(joint: &Joint, error: &Error, all: &[ElementId]) -> Problem {
     let (key, cells, accepted): (&str, &[ElementId], &str) = match error {
         Error::NotCovered { cells, .. } => {
             (".overlap", cells, "a group of cells that both bodies cover")
@@ -142,72 +125,38 @@ pub(super) fn unfit(
         | Error::EdgeWithoutFace { .. }
         | Error::Algebra(_) => ("", &[], "two sound bodies"),
     };
-    let problem = Problem::new(format!("{path}{key}"), error.to_string()).accepted([accepted]);
-    shown(context, problem, (name, mesh), cells)
+    let problem = Problem::new(format!("{}{key}", joint.path), error.to_string());
+    joint.shown(problem.accepted([accepted]), cells)
 }
 
-/// A problem with the cells that it is about, if there are any.
-pub(super) fn shown(
-    context: &Context,
-    problem: Problem,
-    (name, mesh): (&str, &Mesh),
-    cells: &[ElementId],
-) -> Problem {
-    if cells.is_empty() {
-        return problem;
-    }
-    let offenders = Offenders::new(format!("overlap-{name}"), mesh, cells);
-    let path = offenders.path(&context.file);
-    let note = format!(
-        "`carom check --cells` writes the cells to {}",
-        path.display()
-    );
-    Problem {
-        offenders: Some(offenders),
-        ..problem.note(note)
-    }
+/// Drops the rows of nodes that supports hold in both bodies.
+pub(super) fn drop_held(joint: &Joint, rows: &mut Rows, problems: &mut Problems) {
+    let dropped = joint.held.drop_rows(rows);
+    let what = "removed: supports hold both bodies there";
+    name_rows(joint, &dropped, what, problems);
 }
 
 /// Warns of rows, named by node and direction.
-pub(super) fn name_rows(
-    joint: &str,
-    mesh: &Mesh,
-    rows: &[(u32, u32)],
-    what: &str,
-    problems: &mut Problems,
-) {
+pub(super) fn name_rows(joint: &Joint, rows: &[(u32, u32)], what: &str, problems: &mut Problems) {
+    let mesh = joint.mesh;
     let name = |&(node, component): &(u32, u32)| {
-        format!(
-            "{} of node {node}, {}",
-            axis(mesh, component),
-            place(mesh, node)
-        )
+        let (axis, place) = (axis(mesh, component), place(mesh, node));
+        format!("{axis} of node {node}, {place}")
     };
-    name_all(joint, rows.iter().map(name), "constraint", what, problems);
+    name_all(joint, "constraint", rows.iter().map(name), what, problems);
 }
 
 /// Warns of mediator functions, named by their node.
-pub(super) fn name_nodes(
-    joint: &str,
-    mesh: &Mesh,
-    nodes: &[(u32, u32)],
-    what: &str,
-    problems: &mut Problems,
-) {
-    let name = |&(node, _): &(u32, u32)| format!("node {node}, {}", place(mesh, node));
-    name_all(
-        joint,
-        nodes.iter().map(name),
-        "mediator function",
-        what,
-        problems,
-    );
+pub(super) fn name_nodes(joint: &Joint, nodes: &[u32], what: &str, problems: &mut Problems) {
+    let name = |&node: &u32| format!("node {node}, {}", place(joint.mesh, node));
+    let noun = "mediator function";
+    name_all(joint, noun, nodes.iter().map(name), what, problems);
 }
 
 fn name_all(
-    joint: &str,
-    names: impl ExactSizeIterator<Item = String>,
+    joint: &Joint,
     noun: &str,
+    names: impl ExactSizeIterator<Item = String>,
     what: &str,
     problems: &mut Problems,
 ) {
@@ -221,7 +170,8 @@ fn name_all(
         false => String::new(),
     };
     problems.warn(format!(
-        "joint `{joint}`: {} {what} ({}{more})",
+        "joint `{}`: {} {what} ({}{more})",
+        joint.name,
         plural(count, noun),
         first.join("; ")
     ));

@@ -7,10 +7,9 @@ use carom_mesh::ElementId;
 use carom_zones::LinkKind;
 
 use super::context::Context;
-use super::lookup;
 use super::plan::{Plan, Zone};
 use super::problems::Problems;
-use super::time;
+use super::{lookup, time};
 use crate::error::Problem;
 use crate::schema::{self, Case, InnerSteps, Link, Substeps};
 
