@@ -10,7 +10,7 @@ use super::problems::Problems;
 use super::turning::{SMALL_TURNS, any_angle};
 use super::{beams, lookup};
 use crate::error::Problem;
-use crate::schema::{Axis, Body, Hinge};
+use crate::schema::{Axis, Body, ConstraintTerm, Hinge, RigidLink};
 
 /// The constraints of a case.
 pub(super) fn lower(
@@ -21,68 +21,24 @@ pub(super) fn lower(
 ) -> Vec<ModelConstraint> {
     let case = context.case;
     let turning = beams::nodes_with_rotations(context, mesh);
-    let turns = |node: u32| turning.binary_search(&node).is_ok();
     let mut all = Vec::new();
-    for (name, link) in case.rigid_link.iter() {
-        let path = format!("rigid-link.{name}");
-        let first = lookup::single(mesh, &format!("{path}.first"), &link.first, problems);
-        let nodes = problems.group(mesh, &format!("{path}.nodes"), &link.nodes);
-        let (Some(first), Some(nodes)) = (first, nodes) else {
-            continue;
-        };
-        let nodes: Vec<(u32, bool)> = mesh
-            .group_nodes(nodes)
-            .into_iter()
-            .filter(|&node| node != first)
-            .map(|node| (node, turns(node)))
-            .collect();
-        if nodes.is_empty() {
-            let problem = Problem::new(format!("{path}.nodes"), "no node but the first one");
-            let problem = problem.found(&link.nodes);
-            problems.push(problem.accepted(["a group with other nodes"]));
-            continue;
-        }
-        let leads = turns(first);
-        let mut linked: Vec<u32> = nodes.iter().map(|(node, _)| *node).collect();
-        linked.push(first);
-        linked.sort_unstable();
-        if let (true, Some(body)) = (leads, any_angle(mesh, bodies, &linked)) {
-            let name = &body.spec.name;
-            let message =
-                format!("a rigid link turns by small angles, and body '{name}' may turn by any");
-            let problem = Problem::new(format!("{path}.nodes"), message).found(&link.nodes);
-            problems.push(problem.accepted(SMALL_TURNS));
-            continue;
-        }
-        all.push(ModelConstraint::rigid_link(
-            name, mesh, first, &nodes, leads,
+    for (name, given) in case.rigid_link.iter() {
+        all.extend(rigid_link(
+            (mesh, bodies),
+            &turning,
+            (name, given),
+            problems,
         ));
     }
-    for (name, constraint) in case.constraint.iter() {
-        let mut row = Vec::new();
-        for (k, term) in constraint.terms.iter().enumerate() {
+    for (name, given) in case.constraint.iter() {
+        let terms = given.terms.iter().enumerate();
+        let terms = terms.map(|(k, given)| {
             let path = format!("constraint.{name}.terms[{k}]");
-            let Some(node) = lookup::single(mesh, &format!("{path}.on"), &term.on, problems) else {
-                continue;
-            };
-            let (axis, rotates) = term.direction.index();
-            let kind = match rotates {
-                true => Kind::Rotation(axis),
-                false => Kind::Translation(axis),
-            };
-            if rotates && !turns(node) {
-                let problem = Problem::new(
-                    format!("{path}.direction"),
-                    "only nodes of beams have rotations",
-                );
-                problems.push(problem.accepted(["x, y, z", "a node of a beam"]));
-                continue;
-            }
-            row.push((node, kind, term.factor));
-        }
+            term(mesh, &turning, (&path, given), problems)
+        });
         all.push(ModelConstraint {
             name: name.to_owned(),
-            rows: vec![row],
+            rows: vec![terms.flatten().collect()],
         });
     }
     if let (Some(first), false) = (all.first(), context.plan.zones.is_empty()) {
@@ -95,6 +51,61 @@ pub(super) fn lower(
         problems.push(problem.accepted(["a case without zones"]));
     }
     all
+}
+
+/// A rigid link. `turning`: nodes with rotations, sorted.
+fn rigid_link(
+    (mesh, bodies): (&Mesh, &[ModelBody]),
+    turning: &[u32],
+    (name, given): (&str, &RigidLink),
+    problems: &mut Problems,
+) -> Option<ModelConstraint> {
+    let turns = |node: u32| turning.binary_search(&node).is_ok();
+    let path = format!("rigid-link.{name}");
+    let first = lookup::single(mesh, &format!("{path}.first"), &given.first, problems);
+    let path = format!("{path}.nodes");
+    let nodes = problems.group(mesh, &path, &given.nodes);
+    let (first, nodes) = (first?, mesh.group_nodes(nodes?));
+    let others = nodes.into_iter().filter(|&node| node != first);
+    let others: Vec<(u32, bool)> = others.map(|node| (node, turns(node))).collect();
+    if others.is_empty() {
+        let problem = Problem::new(path, "no node but the first one").found(&given.nodes);
+        return problems.refuse(problem.accepted(["a group with other nodes"]));
+    }
+    let mut linked: Vec<u32> = others.iter().map(|(node, _)| *node).collect();
+    linked.push(first);
+    linked.sort_unstable();
+    let leads = turns(first);
+    if let (true, Some(body)) = (leads, any_angle(mesh, bodies, &linked)) {
+        let name = &body.spec.name;
+        let message =
+            format!("a rigid link turns by small angles, and body '{name}' may turn by any");
+        let problem = Problem::new(path, message).found(&given.nodes);
+        return problems.refuse(problem.accepted(SMALL_TURNS));
+    }
+    Some(ModelConstraint::rigid_link(
+        name, mesh, first, &others, leads,
+    ))
+}
+
+/// A term of a constraint: node, direction and factor.
+fn term(
+    mesh: &Mesh,
+    turning: &[u32],
+    (path, given): (&str, &ConstraintTerm),
+    problems: &mut Problems,
+) -> Option<(u32, Kind, f64)> {
+    let node = lookup::single(mesh, &format!("{path}.on"), &given.on, problems)?;
+    let (axis, rotates) = given.direction.index();
+    if !rotates {
+        return Some((node, Kind::Translation(axis), given.factor));
+    }
+    if turning.binary_search(&node).is_err() {
+        let message = "only nodes of beams have rotations";
+        let problem = Problem::new(format!("{path}.direction"), message);
+        return problems.refuse(problem.accepted(["x, y, z", "a node of a beam"]));
+    }
+    Some((node, Kind::Rotation(axis), given.factor))
 }
 
 /// A body with its hinges; `path`: of the body.
@@ -142,12 +153,10 @@ fn releases(
         if own.is_empty() {
             let x = mesh.nodes[node as usize];
             let problem = Problem::new(&path, "a hinge at a node that the body does not have");
+            let found = format!("node {node}, ({:.6}, {:.6}, {:.6}) m", x[0], x[1], x[2]);
             problems.push(
                 problem
-                    .found(format!(
-                        "node {node}, ({:.6}, {:.6}, {:.6}) m",
-                        x[0], x[1], x[2]
-                    ))
+                    .found(found)
                     .accepted(["nodes of the cells of the body"]),
             );
             break;

@@ -9,6 +9,8 @@ mod bodies;
 mod built;
 mod columns;
 mod constraints;
+mod contact_checks;
+mod contact_pairs;
 mod contacts;
 mod context;
 mod course;
@@ -17,6 +19,7 @@ mod discrete;
 mod explicit;
 mod fluids;
 mod general;
+mod general_sides;
 mod held;
 mod hinged;
 mod joints;
@@ -80,7 +83,7 @@ pub use reference::ExactReference;
 /// # Errors
 /// All problems that stage two can tell, with their places.
 pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    build_with((case, locator, input), &[])
+    build_with(case, locator, input, &[])
 }
 
 /// As [`build`], to look at: nothing is written, a reduction that has a file and is made anew is not saved.
@@ -102,7 +105,9 @@ pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Bu
 /// # Errors
 /// As [`build`]; those of the forces have no place.
 pub fn build_with(
-    (case, locator, input): (&Case, &Locator, &Input),
+    case: &Case,
+    locator: &Locator,
+    input: &Input,
     forces: &[AddedForce],
 ) -> Result<Built, Vec<Problem>> {
     let given = Given {

@@ -17,8 +17,9 @@ use super::problems::Problems;
 use super::supports::{self, Held};
 use super::time::{self, Size};
 use super::{
-    arlequin, bodies, constraints, contacts, damped, discrete, explicit, fluids, general,
-    materials, mesh, nonlinear, pretensions, probes, reductions, stops, transitions, zones,
+    arlequin, bodies, constraints, contact_pairs, contacts, damped, discrete, explicit, fluids,
+    general, general_sides, materials, mesh, nonlinear, pretensions, probes, reductions, stops,
+    transitions, zones,
 };
 
 /// A model, and what is built of a case beside it.
@@ -178,15 +179,17 @@ fn contacts(
     } = parts;
     let cells: Vec<Vec<ElementId>> = bodies.iter().map(|body| body.spec.cells.clone()).collect();
     let mut contacts = contacts::lower(context, mesh, bodies, &cells, problems);
-    contacts::listed_twice(&contacts, problems);
-    let of = (&bodies[..], &cells[..]);
-    contacts.extend(general::lower(
+    contact_pairs::listed_twice(&contacts, problems);
+    let of = general_sides::Of {
         context,
         mesh,
-        of,
-        (&contacts, joints),
-        problems,
-    ));
+        bodies,
+        cells: &cells,
+        named: &contacts,
+        joints,
+    };
+    let general = general::lower(&of, problems);
+    contacts.extend(general);
     explicit::contacts_of_deleted(context, bodies, &contacts, problems);
     contacts.extend(stops::lower(context, mesh, bodies, discrete, problems));
     let joining = Joining {

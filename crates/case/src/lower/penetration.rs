@@ -52,7 +52,7 @@ pub(super) fn penetration(context: &Context, system: &System, problems: &mut Pro
         let node = system.mesh_node[deepest.node as usize];
         if let Some(stop) = context.case.stop.get(name) {
             let gap = stop.gap.map_or(0.0, |gap| gap.0);
-            compressed(contact, (gap, deepest.depth, slack), problems);
+            compressed(contact, [gap, deepest.depth], slack, problems);
             continue;
         }
         if way == Some(schema::Penetration::Keep) {
@@ -82,7 +82,7 @@ pub(super) fn penetration(context: &Context, system: &System, problems: &mut Pro
 
 /// Tells of a stop that penetrates at the start by a depth (m) as its gap (m) asks, and refuses one that does not, or that has a law without
 /// a force for that.
-fn compressed(stop: &Contact, (gap, depth, slack): (f64, f64, f64), problems: &mut Problems) {
+fn compressed(stop: &Contact, [gap, depth]: [f64; 2], slack: f64, problems: &mut Problems) {
     let name = &stop.name;
     let has_force = stop.law.get().level() == Level::GapAndRate;
     if has_force && depth <= slack - gap {

@@ -12,64 +12,90 @@ use carom_signals::ChannelFilter;
 
 use super::built::BuiltProbe;
 use super::context::Context;
+use super::joints::is_thin;
 use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::{Mean, Motion, Probe};
 
+/// What a probe records of one cell.
+struct OfCell {
+    what: Motion,
+    key: &'static str,
+    message: &'static str,
+    accepted: &'static str,
+}
+
+/// A stress has a cell, and so have forces in a section.
+const OF_CELLS: [OfCell; 2] = [
+    OfCell {
+        what: Motion::Stress,
+        key: "stress",
+        message: "the stress of a probe is that of one cell",
+        accepted: "`at` in place of `on`",
+    },
+    OfCell {
+        what: Motion::SectionForces,
+        key: "section-forces",
+        message: "forces in a section are those of one cell of a beam or a shell",
+        accepted: "`at`, in a model with beams or shells",
+    },
+];
+
+/// The probes of a case.
 pub(super) fn lower(
     context: &Context,
     mesh: &Mesh,
     bodies: &[ModelBody],
     problems: &mut Problems,
 ) -> Vec<BuiltProbe> {
-    let axisymmetric = bodies
-        .iter()
-        .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
-    let mut probes = Vec::new();
-    for (name, probe) in context.case.probe.iter() {
-        let spectrum = spectrum(name, probe, problems);
-        let has = |what| probe.record.contains(&what);
-        let (nodes, cell, section) = match (&probe.on, &probe.at) {
-            (Some(on), _) => {
-                let path = format!("probe.{name}.on");
-                let Some(group) = problems.group(mesh, &path, on) else {
-                    continue;
-                };
-                (shares(mesh, group, axisymmetric), None, None)
-            }
-            (None, Some(at)) => {
-                let path = format!("probe.{name}.at");
-                let at = problems.vector(mesh, &path, at);
-                let node = nearest_node(mesh, bodies, &at);
-                let thin = bodies.iter().filter(|body| is_thin(body));
-                (
-                    node.map(|node| (node, 1.0)).into_iter().collect(),
-                    nearest_cell(mesh, bodies.iter(), &at),
-                    nearest_cell(mesh, thin, &at).map(|cell| (cell, end(mesh, cell, &at))),
-                )
-            }
-            (None, None) => continue,
-        };
-        if has(Motion::Stress) && cell.is_none() {
-            let (of, accepted) = ("stress", "`at` in place of `on`");
-            problems.push(without_a_cell(name, probe, (Motion::Stress, of, accepted)));
+    let probes = context.case.probe.iter();
+    let probes = probes.map(|(name, given)| probe(mesh, bodies, (name, given), problems));
+    probes.flatten().collect()
+}
+
+/// One probe.
+fn probe(
+    mesh: &Mesh,
+    bodies: &[ModelBody],
+    (name, given): (&str, &Probe),
+    problems: &mut Problems,
+) -> Option<BuiltProbe> {
+    let spectrum = spectrum(name, given, problems);
+    let (nodes, cell, section) = match (&given.on, &given.at) {
+        (Some(on), _) => {
+            let group = problems.group(mesh, &format!("probe.{name}.on"), on)?;
+            let turns = |body: &ModelBody| body.spec.kinematics == Kinematics::Axisymmetric;
+            (shares(mesh, group, bodies.iter().any(turns)), None, None)
         }
-        if has(Motion::SectionForces) && section.is_none() {
-            let accepted = "`at`, in a model with beams or shells";
-            let of = (Motion::SectionForces, "section-forces", accepted);
-            problems.push(without_a_cell(name, probe, of));
+        (None, Some(at)) => {
+            let at = problems.vector(mesh, &format!("probe.{name}.at"), at);
+            let node = nearest_node(mesh, bodies, &at);
+            let thin = bodies.iter().filter(|body| is_thin(body));
+            (
+                node.map(|node| (node, 1.0)).into_iter().collect(),
+                nearest_cell(mesh, bodies.iter(), &at),
+                nearest_cell(mesh, thin, &at).map(|cell| (cell, end(mesh, cell, &at))),
+            )
         }
-        probes.push(BuiltProbe {
-            name: name.to_string(),
-            nodes,
-            cell: cell.filter(|_| has(Motion::Stress)),
-            section: section.filter(|_| has(Motion::SectionForces)),
-            record: probe.record.clone(),
-            spectrum,
-            filters: probe.filter.iter().map(|class| class.frequency()).collect(),
-        });
+        (None, None) => return None,
+    };
+    let has = |what| given.record.contains(&what);
+    for (row, there) in OF_CELLS.iter().zip([cell.is_some(), section.is_some()]) {
+        let place = given.record.iter().position(|of| *of == row.what);
+        if let (Some(place), false) = (place, there) {
+            let problem = Problem::new(format!("probe.{name}.record[{place}]"), row.message);
+            problems.push(problem.found(row.key).accepted([row.accepted]));
+        }
     }
-    probes
+    Some(BuiltProbe {
+        name: name.to_string(),
+        nodes,
+        cell: cell.filter(|_| has(Motion::Stress)),
+        section: section.filter(|_| has(Motion::SectionForces)),
+        record: given.record.clone(),
+        spectrum,
+        filters: given.filter.iter().map(|class| class.frequency()).collect(),
+    })
 }
 
 /// Refuses probes of contacts where there is no contact point.
@@ -264,14 +290,6 @@ fn nearest_cell<'a>(
     cells.min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
 
-/// Whether a body is one of beams or shells, which have forces in sections.
-fn is_thin(body: &ModelBody) -> bool {
-    matches!(
-        body.spec.kinematics,
-        Kinematics::Beam(_) | Kinematics::Shell(_)
-    )
-}
-
 /// The node of a cell of a beam that is nearest to a place; the first of equals.
 fn end(mesh: &Mesh, cell: ElementId, at: &[f64; 3]) -> usize {
     let nodes = mesh.element_nodes(cell);
@@ -281,21 +299,6 @@ fn end(mesh: &Mesh, cell: ElementId, at: &[f64; 3]) -> usize {
 
 fn squared(x: &[f64; 3], y: &[f64; 3]) -> f64 {
     (0..3).map(|i| (x[i] - y[i]).powi(2)).sum()
-}
-
-/// A stress has a cell, and so have forces in a section.
-fn without_a_cell(
-    name: &str,
-    probe: &Probe,
-    (what, key, accepted): (Motion, &str, &str),
-) -> Problem {
-    let place = probe.record.iter().position(|of| *of == what);
-    let path = format!("probe.{name}.record[{}]", place.unwrap_or(0));
-    let message = match what {
-        Motion::Stress => "the stress of a probe is that of one cell",
-        _ => "forces in a section are those of one cell of a beam or a shell",
-    };
-    Problem::new(path, message).found(key).accepted([accepted])
 }
 
 /// The nodes of a group, each with ∫ N_a dΩ over the group: with these weights the mean of the nodes is that of the field over the

@@ -9,7 +9,7 @@ use super::context::Context;
 use super::discrete::{self, End};
 use super::laws::{default_capture, no_curve};
 use super::problems::Problems;
-use super::{lookup, obstacles, zones};
+use super::{lookup, obstacles};
 use crate::error::Problem;
 use crate::schema::{Force, Friction, Length, Scheme, Stop};
 
@@ -42,65 +42,69 @@ pub(super) fn lower(
     discrete: &[ModelDiscrete],
     problems: &mut Problems,
 ) -> Vec<ModelContact> {
-    let mut stops = Vec::new();
-    for (name, stop) in context.case.stop.iter() {
-        let path = format!("stop.{name}");
-        if context.case.contact.get(name).is_some() {
-            let problem = Problem::new(&path, "a contact has this name").found(name);
-            problems.push(problem.accepted(["another name"]));
-            continue;
-        }
-        let ends = discrete::ends(mesh, &path, &stop.ends, problems);
-        let radii = radii(&path, stop, ends.as_ref(), problems);
-        let facing =
-            ends.and_then(|ends| facing(context, mesh, &path, stop, (ends, radii), problems));
-        let scheme = zones::scheme_at(context, None, &[]);
-        let law = stop_law(&path, stop, &scheme, problems);
-        let (Some(facing), Some(law)) = (facing, law) else {
-            continue;
-        };
-        let owned = |nodes: &[u32], axis: [f64; 3], radius: f64| {
-            let owned = |&node: &u32| Some((node, owner(mesh, bodies, discrete, node)?));
-            let points: Option<Vec<(u32, ElementId)>> = nodes.iter().map(owned).collect();
-            let mut surface = Surface::of_points(&points?, axis);
-            for face in &mut surface.faces {
-                face.radius = Some(radius);
-            }
-            Some(surface)
-        };
-        let nodes = &facing.nodes;
-        let secondary = owned(nodes, facing.axis, facing.radii[0]).filter(|_| nodes.len() == 1);
-        let primary = match facing.other {
-            Other::Node(other) => {
-                owned(&[other], facing.axis.map(|n| -n), facing.radii[1]).map(ModelTarget::Surface)
-            }
-            Other::Obstacle(obstacle) => Some(ModelTarget::Rigid(obstacle)),
-        };
-        let (Some(secondary), Some(primary)) = (secondary, primary) else {
-            let message = "an end of the stop is not one node with a mass";
-            let problem = Problem::new(format!("{path}.ends"), message);
-            let accepted = "nodes of bodies or of masses, one at each end, or `ground`";
-            problems.push(problem.accepted([accepted]));
-            continue;
-        };
-        stops.push(ModelContact {
-            initial: facing.initial,
-            sliding: facing.sliding,
-            friction: stop
-                .friction
-                .map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
-            ..ModelContact::new(name, secondary, primary, law)
-        });
+    let owner = |node: u32| owner(mesh, bodies, discrete, node);
+    let stops = context.case.stop.iter();
+    let stops = stops.map(|(name, given)| stop(context, mesh, (name, given), &owner, problems));
+    stops.flatten().collect()
+}
+
+/// One stop. `owner`: a cell with a node.
+fn stop(
+    context: &Context,
+    mesh: &Mesh,
+    (name, given): (&str, &Stop),
+    owner: &dyn Fn(u32) -> Option<ElementId>,
+    problems: &mut Problems,
+) -> Option<ModelContact> {
+    let path = format!("stop.{name}");
+    if context.case.contact.get(name).is_some() {
+        let problem = Problem::new(&path, "a contact has this name").found(name);
+        return problems.refuse(problem.accepted(["another name"]));
     }
-    stops
+    let ends = discrete::ends(mesh, &path, &given.ends, problems);
+    let radii = radii(&path, given, ends.as_ref(), problems);
+    let facing =
+        ends.and_then(|ends| facing(context, mesh, (&path, given), (ends, radii), problems));
+    let law = stop_law(&path, given, &context.case.time.scheme(), problems);
+    let (facing, law) = (facing?, law?);
+    let owned = |nodes: &[u32], axis: [f64; 3], radius: f64| {
+        let owned = |&node: &u32| Some((node, owner(node)?));
+        let points: Option<Vec<(u32, ElementId)>> = nodes.iter().map(owned).collect();
+        let mut surface = Surface::of_points(&points?, axis);
+        for face in &mut surface.faces {
+            face.radius = Some(radius);
+        }
+        Some(surface)
+    };
+    let nodes = &facing.nodes;
+    let secondary = owned(nodes, facing.axis, facing.radii[0]).filter(|_| nodes.len() == 1);
+    let primary = match facing.other {
+        Other::Node(other) => {
+            owned(&[other], facing.axis.map(|n| -n), facing.radii[1]).map(ModelTarget::Surface)
+        }
+        Other::Obstacle(obstacle) => Some(ModelTarget::Rigid(obstacle)),
+    };
+    let (Some(secondary), Some(primary)) = (secondary, primary) else {
+        let message = "an end of the stop is not one node with a mass";
+        let problem = Problem::new(format!("{path}.ends"), message);
+        let accepted = "nodes of bodies or of masses, one at each end, or `ground`";
+        return problems.refuse(problem.accepted([accepted]));
+    };
+    Some(ModelContact {
+        initial: facing.initial,
+        sliding: facing.sliding,
+        friction: given
+            .friction
+            .map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
+        ..ModelContact::new(name, secondary, primary, law)
+    })
 }
 
 /// What faces what: along an axis from places of the mesh, or the shape of an obstacle.
 fn facing(
     context: &Context,
     mesh: &Mesh,
-    path: &str,
-    stop: &Stop,
+    (path, stop): (&str, &Stop),
     (ends, radii): ([End; 2], [f64; 2]),
     problems: &mut Problems,
 ) -> Option<Facing> {

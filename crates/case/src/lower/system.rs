@@ -11,8 +11,8 @@ use super::context::Context;
 use super::model::{self};
 use super::problems::Problems;
 use super::{
-    allowables, contacts, levels, nonlinear, oscillators, penetration, probes, reference, refused,
-    signals, time,
+    allowables, contact_checks, contacts, levels, nonlinear, oscillators, penetration, probes,
+    reference, refused, signals, time,
 };
 
 /// What a case amounts to, without its warnings.
@@ -29,14 +29,14 @@ pub(super) fn lower(
         apart,
     } = assembled(context, modelled.model, modelled.joints.links, problems)?;
     signals::warn_of_steps(context, system.dt, problems);
-    contacts::able_to_act(&system, problems);
-    contacts::with_area(context, &system, problems);
+    contact_checks::able_to_act(&system, problems);
+    contact_checks::with_area(context, &system, problems);
     probes::fine_enough(context, system.dt, problems);
     oscillators::warn_of_oscillators(context, &system, problems);
     penetration::penetration(context, &system, problems);
     penetration::moved(context, &system, &nodes, problems);
     nonlinear::startable(context, &system, problems);
-    contacts::advise(context, &system, &modelled.springs, problems);
+    contact_checks::advise(context, &system, &modelled.springs, problems);
     let levels = levels::lower(context, &system, problems);
     let allowables = allowables::lower(context, &system, problems);
     probes::probes_at_contacts(&modelled.probes, &system, problems);
