@@ -2,7 +2,7 @@
 
 use carom_arlequin::{Bracket, Coupling, Mediator, Model, Models, Overlap, Rows};
 use carom_bodies::Kinematics;
-use carom_dynamics::{ModelBody, ModelContact, ModelTarget, Support};
+use carom_dynamics::{ModelBody, ModelContact, Support};
 use carom_mesh::{ElementId, Mesh};
 
 use super::context::Context;
@@ -10,7 +10,7 @@ use super::held::Held;
 use super::joints::{self, BuiltOverlap, FEW_LAYERS, Joint, Joints, is_thin};
 use super::problems::{Problems, plural};
 use super::unfit::{self, doubt};
-use super::{thin_overlaps, ties};
+use super::{lookup, thin_overlaps, ties};
 use crate::error::Problem;
 use crate::schema::{self, BracketLength, BracketWith};
 
@@ -157,15 +157,10 @@ pub(super) fn contacts_outside(
     problems: &mut Problems,
 ) {
     for contact in contacts {
-        let primary = match &contact.primary {
-            ModelTarget::Surface(surface) => &surface.faces[..],
-            ModelTarget::Rigid(_) => &[],
-        };
-        let sides = [
-            ("secondary", &contact.secondary.faces[..]),
-            ("primary", primary),
-        ];
-        for (key, faces) in sides {
+        for (key, faces) in ["secondary", "primary"]
+            .into_iter()
+            .zip(lookup::faces_of(contact))
+        {
             let parents = faces.iter().map(|face| face.parent);
             let inside: Vec<ElementId> = parents
                 .filter(|cell| joints.inside.contains_key(cell))

@@ -8,9 +8,9 @@ use carom_materials::Law;
 use carom_mesh::{ElementId, Group, Mesh};
 
 use super::context::Context;
-use super::problems::{Problems, dimensions, plural};
+use super::problems::{Problems, dimensions, place, plural};
 use super::shells::{GivenShell, Sectioned};
-use super::{beams, constraints, rigid, shells};
+use super::{beams, constraints, lookup, rigid, shells};
 use crate::error::Problem;
 use crate::schema::{self, Body, FormulationName, FormulationWith, Mass, Section, Vector};
 
@@ -249,20 +249,9 @@ pub(super) fn sound(mesh: &Mesh, path: &str, cells: &[ElementId], problems: &mut
     let mut problem = Problem::new(format!("{path}.region"), message);
     for defect in defects.iter().take(LISTED) {
         let element = defect.element();
-        let nodes = mesh.element_nodes(element);
-        let middle = [0, 1, 2].map(|i| {
-            nodes
-                .iter()
-                .map(|&node| mesh.nodes[node as usize][i])
-                .sum::<f64>()
-                / nodes.len() as f64
-        });
-        let name = mesh.kind(element).table().name;
-        let at = format!("({:.6}, {:.6}, {:.6}) m", middle[0], middle[1], middle[2]);
-        problem = problem.note(format!(
-            "{name} number {} about {at}: {defect}",
-            element.index
-        ));
+        let at = place(lookup::middle(mesh, mesh.element_nodes(element)));
+        let (name, number) = (mesh.kind(element).table().name, element.index);
+        problem = problem.note(format!("{name} number {number} about {at}: {defect}"));
     }
     if defects.len() > LISTED {
         problem = problem.note(format!("and {} more", defects.len() - LISTED));

@@ -6,7 +6,7 @@ use carom_dynamics::{ModelBody, ModelConstraint};
 use carom_mesh::{ElementId, Mesh};
 
 use super::context::Context;
-use super::problems::Problems;
+use super::problems::{Problems, place};
 use super::turning::{SMALL_TURNS, any_angle};
 use super::{beams, lookup};
 use crate::error::Problem;
@@ -151,9 +151,8 @@ fn releases(
         let own = cells.iter().filter_map(|&cell| Some((cell, end(cell)?)));
         let own: Vec<(ElementId, usize)> = own.collect();
         if own.is_empty() {
-            let x = mesh.nodes[node as usize];
             let problem = Problem::new(&path, "a hinge at a node that the body does not have");
-            let found = format!("node {node}, ({:.6}, {:.6}, {:.6}) m", x[0], x[1], x[2]);
+            let found = format!("node {node}, {}", place(mesh.nodes[node as usize]));
             problems.push(
                 problem
                     .found(found)

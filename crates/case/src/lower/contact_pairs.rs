@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use carom_dynamics::{ModelContact, ModelTarget};
 use carom_mesh::{Face, Surface};
 
+use super::lookup::faces_of;
 use super::problems::Problems;
 use crate::error::Problem;
 
@@ -65,11 +66,7 @@ impl Sides {
     fn of(contacts: &[ModelContact]) -> Sides {
         let mut sides = BTreeMap::new();
         for (k, contact) in contacts.iter().enumerate() {
-            let primary = match &contact.primary {
-                ModelTarget::Surface(surface) => &surface.faces[..],
-                ModelTarget::Rigid(_) => &[],
-            };
-            for face in contact.secondary.faces.iter().chain(primary) {
+            for face in faces_of(contact).into_iter().flatten() {
                 let of: &mut Vec<usize> = sides.entry(sorted_nodes(face)).or_default();
                 if of.last() != Some(&k) {
                     of.push(k);

@@ -10,7 +10,7 @@ use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 use super::context::Context;
 use super::laws::{self, sides};
 use super::problems::Problems;
-use super::{discrete, obstacles, surfaces, zones};
+use super::{discrete, lookup, obstacles, surfaces, zones};
 use crate::error::Problem;
 use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration};
 
@@ -165,13 +165,9 @@ fn sections(bodies: &[ModelBody], secondary: &Surface, primary: &ModelTarget) ->
     let ModelTarget::Surface(primary) = primary else {
         return None;
     };
-    let section = |surface: &Surface| {
-        let parent = surface.faces.first()?.parent;
-        let owner = |body: &&ModelBody| body.spec.cells.binary_search(&parent).is_ok();
-        match bodies.iter().find(owner)?.spec.kinematics {
-            Kinematics::Axisymmetric | Kinematics::Solid => None,
-            other => Some(other.surface_factor(&[0.0; 3])),
-        }
+    let section = |surface: &Surface| match lookup::body_behind(bodies, surface)?.spec.kinematics {
+        Kinematics::Axisymmetric | Kinematics::Solid => None,
+        other => Some(other.surface_factor(&[0.0; 3])),
     };
     Some([section(secondary)?, section(primary)?])
 }

@@ -7,6 +7,7 @@ use carom_materials::{Law, Material};
 use carom_mesh::Surface;
 
 use super::context::Context;
+use super::lookup;
 use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema;
@@ -54,9 +55,7 @@ pub(super) fn contacts_of_deleted(
     problems: &mut Problems,
 ) {
     let deletes = |surface: &Surface| {
-        let parent = surface.faces.first().map(|face| face.parent)?;
-        let owner = |body: &&ModelBody| body.spec.cells.binary_search(&parent).is_ok();
-        let body = bodies.iter().find(owner)?;
+        let body = lookup::body_behind(bodies, surface)?;
         body.spec.deletion.map(|_| body.spec.name.clone())
     };
     for contact in contacts {

@@ -7,6 +7,7 @@ use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
 use carom_mesh::{Mesh, Surface};
 
 use super::context::Context;
+use super::lookup;
 use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::Scheme;
@@ -121,12 +122,7 @@ fn side(mesh: &Mesh, bodies: &[ModelBody], surface: &Surface) -> Side {
         };
         side.size = side.size.max(size);
     }
-    let owner = surface.faces.first().and_then(|face| {
-        bodies
-            .iter()
-            .find(|body| body.spec.cells.binary_search(&face.parent).is_ok())
-    });
-    if let Some(body) = owner {
+    if let Some(body) = lookup::body_behind(bodies, surface) {
         let material = body.spec.material.initial();
         side.young = material.young;
         side.wave_speed = material.wave_speed(body.spec.kinematics.plane());

@@ -258,11 +258,8 @@ fn of_one_body(
         let mut faces = surface.faces.iter();
         faces.any(|face| cells.binary_search(&face.parent).is_ok())
     };
-    let owners: Vec<&str> = bodies
-        .iter()
-        .filter(owns)
-        .map(|body| body.spec.name.as_str())
-        .collect();
+    let owners = bodies.iter().filter(owns);
+    let owners: Vec<&str> = owners.map(|body| body.spec.name.as_str()).collect();
     if owners.len() > 1 {
         let message = "a load acts on one body";
         let problem = Problem::new(format!("{path}.on"), message)

@@ -1,6 +1,7 @@
 //! Bodies, nodes, surfaces and directions by what a case says of them.
 
-use carom_mesh::{ElementId, Mesh, Surface};
+use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
+use carom_mesh::{ElementId, Face, Mesh, Surface};
 
 use super::problems::{Problems, dimensions, plural};
 use crate::error::Problem;
@@ -108,4 +109,30 @@ pub(super) fn within(mesh: &Mesh, path: &str, axis: usize, problems: &mut Proble
     );
     let problem = Problem::new(path, message).found(AXES[axis]);
     problems.push(problem.accepted(AXES[..mesh.dim].to_vec()));
+}
+
+/// The body that has a cell.
+pub(super) fn owner(bodies: &[ModelBody], cell: ElementId) -> Option<&ModelBody> {
+    let mut bodies = bodies.iter();
+    bodies.find(|body| body.spec.cells.binary_search(&cell).is_ok())
+}
+
+/// The body of a surface: that of its first face.
+pub(super) fn body_behind<'a>(bodies: &'a [ModelBody], surface: &Surface) -> Option<&'a ModelBody> {
+    owner(bodies, surface.faces.first()?.parent)
+}
+
+/// The faces of both sides of a contact; an obstacle has none.
+pub(super) fn faces_of(contact: &ModelContact) -> [&[Face]; 2] {
+    let primary = match &contact.primary {
+        ModelTarget::Surface(surface) => &surface.faces[..],
+        ModelTarget::Rigid(_) => &[],
+    };
+    [&contact.secondary.faces, primary]
+}
+
+/// The mean of the places of nodes, m.
+pub(super) fn middle(mesh: &Mesh, nodes: &[u32]) -> [f64; 3] {
+    let places = || nodes.iter().map(|&node| mesh.nodes[node as usize]);
+    [0, 1, 2].map(|i| places().map(|x| x[i]).sum::<f64>() / nodes.len() as f64)
 }

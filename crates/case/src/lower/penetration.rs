@@ -6,7 +6,7 @@ use carom_dynamics::System;
 
 use super::bodies;
 use super::context::Context;
-use super::problems::{Problems, plural};
+use super::problems::{Problems, place, plural};
 use crate::error::Problem;
 use crate::schema;
 
@@ -16,23 +16,16 @@ pub(super) fn penetration(context: &Context, system: &System, problems: &mut Pro
     let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
     for (k, contact) in system.contacts.iter().enumerate() {
         let name = &contact.name;
-        let way = context
-            .case
-            .contact
-            .get(name)
-            .map(|contact| contact.initial);
+        let given = context.case.contact.get(name);
+        let way = given.map(|contact| contact.initial);
         let inside = system.self_penetrations(k);
         if let (Some(&node), Some(schema::Penetration::Refuse)) = (inside.first(), way) {
             let count = plural(inside.len(), "node");
             let message = format!("{count} of the surface inside its own body at the start");
-            let x = system.mesh.nodes[node as usize];
-            let problem = Problem::new(format!("contact.{name}"), message)
-                .found(format!(
-                    "node {node}, ({:.6}, {:.6}, {:.6}) m",
-                    x[0], x[1], x[2]
-                ))
-                .accepted(["a mesh that does not overlap itself"]);
-            problems.push(problem);
+            let at = place(system.mesh.nodes[node as usize]);
+            let problem = Problem::new(format!("contact.{name}"), message);
+            let problem = problem.found(format!("node {node}, {at}"));
+            problems.push(problem.accepted(["a mesh that does not overlap itself"]));
             continue;
         }
         if way == Some(schema::Penetration::Offset) {
@@ -59,7 +52,7 @@ pub(super) fn penetration(context: &Context, system: &System, problems: &mut Pro
             tell(name, deep.len(), (node, deepest.depth), "kept", problems);
             continue;
         }
-        let x = contact.points[deepest.point].place(&places);
+        let at = place(contact.points[deepest.point].place(&places));
         let verb = match deep.len() {
             1 => "penetrates",
             _ => "penetrate",
@@ -67,8 +60,8 @@ pub(super) fn penetration(context: &Context, system: &System, problems: &mut Pro
         let message = format!("{} {verb} at the start", plural(deep.len(), "point"));
         let problem = Problem::new(format!("contact.{name}"), message)
             .found(format!(
-                "a gap of {:.4e} m at node {node}, ({:.6}, {:.6}, {:.6}) m",
-                -deepest.depth, x[0], x[1], x[2]
+                "a gap of {:.4e} m at node {node}, {at}",
+                -deepest.depth
             ))
             .accepted([
                 format!("gaps of at least -{slack:.1e} m"),

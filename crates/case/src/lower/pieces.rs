@@ -9,7 +9,7 @@ use carom_mesh::{Mesh, Parts};
 
 use super::context::Context;
 use super::joints::is_thin;
-use super::problems::Problems;
+use super::problems::{Problems, place};
 
 /// What joins pieces of bodies beside common nodes.
 pub(super) struct Joining<'a> {
@@ -64,18 +64,15 @@ pub(super) fn pieces(
         let Some(([one, other], distance)) = mesh.closest_nodes(largest, &others) else {
             continue;
         };
-        let x = mesh.nodes[one as usize];
+        let at = place(mesh.nodes[one as usize]);
         let merge = match distance <= 1e-6 * mesh.size() {
             true => "they are the same place: merge the nodes of the mesh",
             false => "merge the nodes of the mesh, or make each piece a body of its own",
         };
         problems.doubt(format!(
-            "body `{}` is in {} pieces that share no node and separate without resistance; the closest nodes of two of them, {one} at ({:.6}, {:.6}, {:.6}) m and {other}, are {distance:.4e} m apart; {merge}",
+            "body `{}` is in {} pieces that share no node and separate without resistance; the closest nodes of two of them, {one} at {at} and {other}, are {distance:.4e} m apart; {merge}",
             body.spec.name,
             pieces.len(),
-            x[0],
-            x[1],
-            x[2]
         ));
     }
 }
@@ -116,14 +113,11 @@ pub(super) fn unglued(
             let Some((first, _)) = within.first().filter(|_| within.len() > 1) else {
                 continue;
             };
-            let x = mesh.nodes[*first as usize];
+            let at = place(mesh.nodes[*first as usize]);
             problems.doubt(format!(
-                "{} nodes of body `{}`, the first at ({:.6}, {:.6}, {:.6}) m, lie in the solid `{}`, and nothing joins the two: [arlequin.<name>] glues them over a volume, [transition.<name>] an end to a face",
+                "{} nodes of body `{}`, the first at {at}, lie in the solid `{}`, and nothing joins the two: [arlequin.<name>] glues them over a volume, [transition.<name>] an end to a face",
                 within.len(),
                 names[0],
-                x[0],
-                x[1],
-                x[2],
                 names[1],
             ));
         }

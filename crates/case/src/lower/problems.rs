@@ -141,6 +141,11 @@ pub(super) fn with_cells(problem: Problem, offenders: Offenders, file: &Path) ->
     }
 }
 
+/// A place in m.
+pub(super) fn place([x, y, z]: [f64; 3]) -> String {
+    format!("({x:.6}, {y:.6}, {z:.6}) m")
+}
+
 pub(super) fn dimensions(dim: usize) -> String {
     plural(dim, "dimension")
 }

@@ -10,8 +10,8 @@ use carom_materials::Law;
 use carom_mesh::{ElementId, Group, Mesh, Surface};
 
 use super::context::Context;
-use super::problems::{Problems, Refusal, with_cells};
-use super::thickness;
+use super::problems::{Problems, Refusal, place, with_cells};
+use super::{lookup, thickness};
 use crate::error::Problem;
 use crate::offenders::Offenders;
 use crate::schema::{self, Body, Section};
@@ -184,22 +184,12 @@ fn refuse_cells(
     let Some(first) = found.first() else {
         return;
     };
-    let nodes = mesh.element_nodes(first.cell);
-    let mean = |i: usize| {
-        let sum: f64 = nodes.iter().map(|&node| mesh.nodes[node as usize][i]).sum();
-        sum / nodes.len() as f64
-    };
+    let at = place(lookup::middle(mesh, mesh.element_nodes(first.cell)));
     let more = match found.len() {
         1 => String::new(),
         count => format!("; no shell can be on {count} cells in all"),
     };
-    let message = format!(
-        "the cell about ({:.6}, {:.6}, {:.6}) m {}{more}",
-        mean(0),
-        mean(1),
-        mean(2),
-        first.why
-    );
+    let message = format!("the cell about {at} {}{more}", first.why);
     let cells: Vec<ElementId> = found.iter().map(|defect| defect.cell).collect();
     let offenders = Offenders::new(format!("shell-{name}"), mesh, &cells);
     let accepted = "flat convex cells, all of a shell with their normals to the same side";

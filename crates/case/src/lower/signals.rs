@@ -291,27 +291,34 @@ fn columns(
 }
 
 /// The signal of this name, if it is one; a problem where there is none.
-fn find(context: &Context, path: &str, name: &str, problems: &mut Problems) -> Option<Course> {
-    match context.signals.courses.get(name) {
-        Some(course) => course.clone(),
-        None => {
-            let names: Vec<String> = context.signals.courses.keys().cloned().collect();
-            let problem = Problem::new(path, "no signal of this name in the case");
-            let names = names.iter().map(String::as_str);
-            problems.refuse(problem.unknown(name, names))
-        }
-    }
+fn find<'a>(
+    context: &Context<'a>,
+    path: &str,
+    name: &str,
+    problems: &mut Problems,
+) -> Option<&'a Course> {
+    let courses = &context.signals.courses;
+    let Some(course) = courses.get(name) else {
+        let problem = Problem::new(path, "no signal of this name in the case");
+        return problems.refuse(problem.unknown(name, courses.keys().map(String::as_str)));
+    };
+    course.as_ref()
 }
 
-fn of_another_quantity(
-    path: &str,
-    (name, found): (&str, &Course),
+/// A signal of one of the quantities that `amplitude` knows; `accepted`: these in words.
+fn of_quantity(
+    context: &Context,
+    (path, name): (&str, &str),
     accepted: &str,
+    amplitude: impl FnOnce(&Course) -> Option<Amplitude>,
     problems: &mut Problems,
-) {
-    let message = format!("the signal `{name}` is {}", found.quantity());
-    let problem = Problem::new(path, message).found(name);
-    problems.push(problem.accepted([format!("a signal that is {accepted}")]));
+) -> Option<Amplitude> {
+    let course = find(context, path, name, problems)?;
+    amplitude(course).or_else(|| {
+        let message = format!("the signal `{name}` is {}", course.quantity());
+        let problem = Problem::new(path, message).found(name);
+        problems.refuse(problem.accepted([format!("a signal that is {accepted}")]))
+    })
 }
 
 /// The displacement of a support that follows a signal.
@@ -321,18 +328,16 @@ pub(super) fn displacement_signal(
     name: &str,
     problems: &mut Problems,
 ) -> Option<Amplitude> {
-    match find(context, path, name, problems)? {
-        Course::Displacement(amplitude) => Some(amplitude),
-        Course::Acceleration(record) => {
-            warn_of_drift(path, name, &record, problems);
-            Some(record.displacement())
-        }
-        other => {
-            let accepted = "a displacement or an acceleration";
-            of_another_quantity(path, (name, &other), accepted, problems);
-            None
-        }
+    if let Some(Some(Course::Acceleration(record))) = context.signals.courses.get(name) {
+        warn_of_drift(path, name, record, problems);
     }
+    let accepted = "a displacement or an acceleration";
+    let amplitude = |course: &Course| match course {
+        Course::Displacement(amplitude) => Some(amplitude.clone()),
+        Course::Acceleration(record) => Some(record.displacement()),
+        Course::Factor(_) => None,
+    };
+    of_quantity(context, (path, name), accepted, amplitude, problems)
 }
 
 /// A base acceleration.
@@ -342,13 +347,17 @@ pub(super) fn acceleration_signal(
     name: &str,
     problems: &mut Problems,
 ) -> Option<Amplitude> {
-    match find(context, path, name, problems)? {
+    let amplitude = |course: &Course| match course {
         Course::Acceleration(record) => Some(record.acceleration()),
-        other => {
-            of_another_quantity(path, (name, &other), "an acceleration", problems);
-            None
-        }
-    }
+        _ => None,
+    };
+    of_quantity(
+        context,
+        (path, name),
+        "an acceleration",
+        amplitude,
+        problems,
+    )
 }
 
 /// The factor of a load.
@@ -358,13 +367,11 @@ pub(super) fn factor_signal(
     name: &str,
     problems: &mut Problems,
 ) -> Option<Amplitude> {
-    match find(context, path, name, problems)? {
-        Course::Factor(amplitude) => Some(amplitude),
-        other => {
-            of_another_quantity(path, (name, &other), "a factor", problems);
-            None
-        }
-    }
+    let amplitude = |course: &Course| match course {
+        Course::Factor(amplitude) => Some(amplitude.clone()),
+        _ => None,
+    };
+    of_quantity(context, (path, name), "a factor", amplitude, problems)
 }
 
 /// Warns of a support that moves on after its record.

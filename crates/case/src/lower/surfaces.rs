@@ -33,13 +33,9 @@ pub(super) fn contact_surface(
     if axes.is_empty() || flat {
         return lookup::surface(mesh, &cells.beside(mesh, group), path, name, problems);
     }
-    let known: Vec<bool> = axes
-        .iter()
-        .map(|axes| has_surface(axes, problems))
-        .collect();
-    if known.contains(&false) {
-        return None;
-    }
+    let known = axes.iter().map(|axes| has_surface(axes, problems));
+    let known: Vec<Option<()>> = known.collect();
+    known.into_iter().collect::<Option<()>>()?;
     let own: Vec<ElementId> = axes.iter().flat_map(|axes| axes.cells).copied().collect();
     let radius = |cell: ElementId| {
         let owner = axes
@@ -57,27 +53,25 @@ pub(super) fn contact_surface(
 }
 
 /// Refuses beams of which a contact does not know where their surface is.
-fn has_surface(axes: &Axes, problems: &mut Problems) -> bool {
+fn has_surface(axes: &Axes, problems: &mut Problems) -> Option<()> {
     let path = format!("body.{}.section.beam", axes.body);
     if axes.section.offset != [0.0; 2] {
         let message = "contacts of beams whose axis is beside their nodes are not available";
         let problem = Problem::new(format!("{path}.offset"), message);
         let problem = problem.found(format!("{:?} m", axes.section.offset));
-        problems.push(problem.accepted(["no `offset`", "a stop between nodes"]));
-        return false;
+        return problems.refuse(problem.accepted(["no `offset`", "a stop between nodes"]));
     }
     if axes.section.radius.is_none() {
         let message = "a contact must know how far the surface of the beam is from its axis, and this shape does not say";
         let problem = Problem::new(path, message);
-        problems.push(problem.accepted([
+        return problems.refuse(problem.accepted([
             "`radius`",
             "shape.circle",
             "shape.tube",
             "in the plane: shape.rectangle, shape.i",
         ]));
-        return false;
     }
-    true
+    Some(())
 }
 
 /// The beams of which a group is cells or points; none if it is anything else.

@@ -36,10 +36,7 @@ pub(super) fn tied(
         let accepted = "surfaces of two bodies with nodes of their own";
         return problems.refuse(refuse("these surfaces have common nodes", accepted));
     }
-    let parent = one.faces.first().map(|face| face.parent)?;
-    let body = bodies
-        .iter()
-        .find(|body| body.spec.cells.contains(&parent))?;
+    let body = lookup::body_behind(bodies, &one)?;
     let rows = mortar_rows(mesh, &one, &other, |x| {
         body.spec.kinematics.surface_factor(x)
     });

@@ -5,7 +5,7 @@ use carom_dynamics::ModelBody;
 use carom_mesh::{ElementId, Mesh};
 
 use super::joints::Joint;
-use super::problems::{Problems, plural};
+use super::problems::{Problems, place, plural};
 use crate::error::Problem;
 
 /// Least eigenvalue of the Gram matrix of the rows, each of length one, below which they count as dependent: the
@@ -28,7 +28,7 @@ pub(super) fn full_rank(joint: &Joint, bodies: &[ModelBody], rows: &Rows, proble
         return;
     }
     let (node, component) = rank.weakest;
-    let at = place(mesh, node);
+    let at = place(mesh.nodes[node as usize]);
     let message = "the mediator has functions that vanish on both bodies: their rows are dependent";
     let problem = Problem::new(format!("{path}.mediator"), message)
         .found(format!(
@@ -140,7 +140,7 @@ pub(super) fn drop_held(joint: &Joint, rows: &mut Rows, problems: &mut Problems)
 pub(super) fn name_rows(joint: &Joint, rows: &[(u32, u32)], what: &str, problems: &mut Problems) {
     let mesh = joint.mesh;
     let name = |&(node, component): &(u32, u32)| {
-        let (axis, place) = (axis(mesh, component), place(mesh, node));
+        let (axis, place) = (axis(mesh, component), place(mesh.nodes[node as usize]));
         format!("{axis} of node {node}, {place}")
     };
     name_all(joint, "constraint", rows.iter().map(name), what, problems);
@@ -148,7 +148,7 @@ pub(super) fn name_rows(joint: &Joint, rows: &[(u32, u32)], what: &str, problems
 
 /// Warns of mediator functions, named by their node.
 pub(super) fn name_nodes(joint: &Joint, nodes: &[u32], what: &str, problems: &mut Problems) {
-    let name = |&node: &u32| format!("node {node}, {}", place(joint.mesh, node));
+    let name = |&node: &u32| format!("node {node}, {}", place(joint.mesh.nodes[node as usize]));
     let noun = "mediator function";
     name_all(joint, noun, nodes.iter().map(name), what, problems);
 }
@@ -195,9 +195,4 @@ fn axis(mesh: &Mesh, component: u32) -> &'static str {
         (2, Some(_)) => "rz",
         (_, Some(turned)) => ["rx", "ry", "rz"][turned.min(2)],
     }
-}
-
-fn place(mesh: &Mesh, node: u32) -> String {
-    let x = mesh.nodes[node as usize];
-    format!("({:.6}, {:.6}, {:.6}) m", x[0], x[1], x[2])
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use carom_dynamics::{ModelContact, ModelTarget};
+use carom_dynamics::ModelContact;
 use carom_mesh::ElementId;
 use carom_zones::LinkKind;
 
@@ -201,10 +201,7 @@ pub(super) fn scheme_at(
     of: &[Vec<ElementId>],
 ) -> schema::Scheme {
     let body = cell.and_then(|cell| body_of(cell, of));
-    let zone = body.and_then(|body| context.plan.zone_of(body));
-    zone.map_or(context.case.time.scheme(), |zone| {
-        context.plan.zones[zone].scheme
-    })
+    body.map_or(context.case.time.scheme(), |body| context.scheme_of(body))
 }
 
 /// Refuses laws that the schemes of zones cannot take.
@@ -219,27 +216,16 @@ pub(super) fn laws(
     }
     let mut schemes: BTreeMap<&str, schema::Scheme> = BTreeMap::new();
     for contact in contacts {
-        let primary = match &contact.primary {
-            ModelTarget::Surface(surface) => &surface.faces[..],
-            ModelTarget::Rigid(_) => &[],
-        };
-        let faces = contact.secondary.faces.iter().chain(primary);
-        let mut zones: Vec<usize> = faces
-            .filter_map(|face| context.plan.zone_of(body_of(face.parent, of)?))
-            .collect();
-        zones.sort_unstable();
-        zones.dedup();
+        let faces = lookup::faces_of(contact).into_iter().flatten();
+        let zones = faces.filter_map(|face| context.plan.zone_of(body_of(face.parent, of)?));
         // of several the one that comes first
-        if let Some(&zone) = zones.first() {
+        if let Some(zone) = zones.min() {
             schemes.insert(&contact.name, context.plan.zones[zone].scheme);
         }
     }
     let default = context.case.time.scheme();
-    time::laws(
-        context,
-        |name| schemes.get(name).copied().unwrap_or(default),
-        problems,
-    );
+    let scheme_of = |name: &str| schemes.get(name).copied().unwrap_or(default);
+    time::laws(context, scheme_of, problems);
 }
 
 /// The body of a cell.
