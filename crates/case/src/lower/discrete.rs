@@ -10,7 +10,7 @@ use super::context::Context;
 use super::problems::{Problems, plural};
 use super::{lookup, rigid};
 use crate::error::Problem;
-use crate::schema::{Ends, NormalVector, PointMass};
+use crate::schema::{Dashpot, Ends, NormalVector, PointMass, Spring};
 
 /// The end that does not move.
 const GROUND: &str = "ground";
@@ -62,45 +62,67 @@ pub(super) fn lower(
     mesh: &mut Mesh,
     problems: &mut Problems,
 ) -> Vec<ModelDiscrete> {
-    let mut discrete = Vec::new();
     let case = context.case;
-    for (name, mass) in case.mass.iter() {
-        discrete.extend(self::mass(mesh, name, mass, problems));
+    let mut discrete = Vec::new();
+    for (name, given) in case.mass.iter() {
+        discrete.extend(mass(mesh, name, given, problems));
     }
-    for (name, spring) in case.spring.iter() {
-        let path = format!("spring.{name}");
-        let curve = match (&spring.stiffness, &spring.curve) {
-            (Some(stiffness), _) => Some(Curve::line(stiffness.0)),
-            (None, Some(points)) => {
-                let points = points.iter().map(|p| [p.elongation.0, p.force.0]);
-                curve(&path, points.collect(), problems)
-            }
-            (None, None) => None,
-        };
-        let cells = linked(mesh, &path, &spring.ends, spring.axis.as_ref(), problems);
-        if let (Some(curve), Some((cells, axis))) = (curve, cells) {
-            let kind = DiscreteKind::Spring(Link { curve, axis });
-            discrete.push(model(name, cells, kind));
-        }
+    for (name, given) in case.spring.iter() {
+        discrete.extend(spring(mesh, name, given, problems));
     }
-    for (name, dashpot) in case.dashpot.iter() {
-        let path = format!("dashpot.{name}");
-        let curve = match (&dashpot.damping, &dashpot.curve) {
-            (Some(damping), _) => Some(Curve::line(damping.0)),
-            (None, Some(points)) => {
-                let points = points.iter().map(|p| [p.rate.0, p.force.0]);
-                let curve = curve(&path, points.collect(), problems);
-                curve.filter(|curve| dissipates(&path, curve, problems))
-            }
-            (None, None) => None,
-        };
-        let cells = linked(mesh, &path, &dashpot.ends, dashpot.axis.as_ref(), problems);
-        if let (Some(curve), Some((cells, axis))) = (curve, cells) {
-            let kind = DiscreteKind::Dashpot(Link { curve, axis });
-            discrete.push(model(name, cells, kind));
-        }
+    for (name, given) in case.dashpot.iter() {
+        discrete.extend(dashpot(mesh, name, given, problems));
     }
     discrete
+}
+
+fn spring(
+    mesh: &mut Mesh,
+    name: &str,
+    given: &Spring,
+    problems: &mut Problems,
+) -> Option<ModelDiscrete> {
+    let path = format!("spring.{name}");
+    let curve = match (&given.stiffness, &given.curve) {
+        (Some(stiffness), _) => Some(Curve::line(stiffness.0)),
+        (None, Some(points)) => {
+            let points = points.iter().map(|p| [p.elongation.0, p.force.0]);
+            curve(&path, points.collect(), problems)
+        }
+        (None, None) => None,
+    };
+    let cells = linked(mesh, &path, &given.ends, given.axis.as_ref(), problems);
+    let (curve, (cells, axis)) = (curve?, cells?);
+    Some(model(
+        name,
+        cells,
+        DiscreteKind::Spring(Link { curve, axis }),
+    ))
+}
+
+fn dashpot(
+    mesh: &mut Mesh,
+    name: &str,
+    given: &Dashpot,
+    problems: &mut Problems,
+) -> Option<ModelDiscrete> {
+    let path = format!("dashpot.{name}");
+    let curve = match (&given.damping, &given.curve) {
+        (Some(damping), _) => Some(Curve::line(damping.0)),
+        (None, Some(points)) => {
+            let points = points.iter().map(|p| [p.rate.0, p.force.0]);
+            let curve = curve(&path, points.collect(), problems);
+            curve.filter(|curve| dissipates(&path, curve, problems))
+        }
+        (None, None) => None,
+    };
+    let cells = linked(mesh, &path, &given.ends, given.axis.as_ref(), problems);
+    let (curve, (cells, axis)) = (curve?, cells?);
+    Some(model(
+        name,
+        cells,
+        DiscreteKind::Dashpot(Link { curve, axis }),
+    ))
 }
 
 fn mass(

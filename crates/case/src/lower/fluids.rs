@@ -78,46 +78,47 @@ pub(super) fn lower(
     mesh: &mut Mesh,
     problems: &mut Problems,
 ) -> Vec<ModelDiscrete> {
-    let mut made = Vec::new();
-    for (name, fluid) in context.case.fluid.iter() {
-        let path = format!("fluid.{name}");
-        let Some(per_length) = fluid_per_length(&path, fluid, problems) else {
-            continue;
-        };
-        let Some((pairs, axis)) = beside(mesh, &path, fluid, problems) else {
-            continue;
-        };
-        // pairs that stand for the same length are one set
-        let mut sets: Vec<(f64, Vec<ElementId>)> = Vec::new();
-        for (nodes, length) in pairs {
-            let cell = mesh.push(Kind::Bar2, &nodes);
-            let same = |(other, _): &&mut (f64, Vec<ElementId>)| {
-                (*other - length).abs() <= BESIDE * length
-            };
-            match sets.iter_mut().find(same) {
-                Some((_, cells)) => cells.push(cell),
-                None => sets.push((length, vec![cell])),
-            }
-        }
-        for (k, (length, cells)) in sets.into_iter().enumerate() {
-            let name = match k {
-                0 => name.to_owned(),
-                _ => format!("{name}.{}", k + 1),
-            };
-            made.push(ModelDiscrete::new(DiscreteSpec {
-                name,
-                cells,
-                kind: DiscreteKind::Fluid(FluidGap {
-                    masses: per_length.map(|mass| mass * length),
-                    axis: Some(axis),
-                    width: fluid
-                        .diameters
-                        .map(|[inner, outer]| 0.5 * (outer.0 - inner.0)),
-                }),
-            }));
+    let fluids = context.case.fluid.iter();
+    let fluids = fluids.map(|(name, given)| fluid(mesh, name, given, problems));
+    fluids.flatten().flatten().collect()
+}
+
+/// The fluid in one gap, by the length that pairs of nodes stand for.
+fn fluid(
+    mesh: &mut Mesh,
+    name: &str,
+    given: &schema::FluidGap,
+    problems: &mut Problems,
+) -> Option<Vec<ModelDiscrete>> {
+    let path = format!("fluid.{name}");
+    let per_length = fluid_per_length(&path, given, problems)?;
+    let (pairs, axis) = beside(mesh, &path, given, problems)?;
+    let mut sets: Vec<(f64, Vec<ElementId>)> = Vec::new();
+    for (nodes, length) in pairs {
+        let cell = mesh.push(Kind::Bar2, &nodes);
+        let mut known = sets.iter_mut();
+        match known.find(|(other, _)| (*other - length).abs() <= BESIDE * length) {
+            Some((_, cells)) => cells.push(cell),
+            None => sets.push((length, vec![cell])),
         }
     }
-    made
+    let width = given.diameters;
+    let width = width.map(|[inner, outer]| 0.5 * (outer.0 - inner.0));
+    let set = |(k, (length, cells)): (usize, (f64, Vec<ElementId>))| {
+        ModelDiscrete::new(DiscreteSpec {
+            name: match k {
+                0 => name.to_owned(),
+                _ => format!("{name}.{}", k + 1),
+            },
+            cells,
+            kind: DiscreteKind::Fluid(FluidGap {
+                masses: per_length.map(|mass| mass * length),
+                axis: Some(axis),
+                width,
+            }),
+        })
+    };
+    Some(sets.into_iter().enumerate().map(set).collect())
 }
 
 /// Masses of a fluid per length, kg/m.

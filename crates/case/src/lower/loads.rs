@@ -62,6 +62,12 @@ fn on_surfaces(
 ) -> Vec<Load> {
     let cells: Vec<ElementId> = bodies.iter().flat_map(|b| b.spec.cells.clone()).collect();
     let shells = shell_cells(bodies);
+    let surface = |path: &str, on: &str, problems: &mut Problems| {
+        let group = mesh.groups.get(on);
+        let middle = group.filter(|group| group.dim == 2 && mesh.dim == 3);
+        let middle = middle.and_then(|group| Surface::of_shells(mesh, group, &shells).ok());
+        middle.or_else(|| lookup::surface(mesh, &cells, path, on, problems))
+    };
     let mut loads = Vec::new();
     for (name, load) in context.case.load.iter() {
         let path = format!("load.{name}");
@@ -69,26 +75,17 @@ fn on_surfaces(
             continue;
         };
         let amplitude = load_amplitude(context, &path, load, problems);
-        let on = load.on.as_deref().unwrap_or_default();
-        let middle = mesh
-            .groups
-            .get(on)
-            .filter(|group| group.dim == 2 && mesh.dim == 3);
-        let middle = middle.and_then(|group| Surface::of_shells(mesh, group, &shells).ok());
-        let surface =
-            middle.or_else(|| lookup::surface(mesh, &cells, &format!("{path}.on"), on, problems));
-        let Some(surface) = surface else {
+        let (path, on) = (format!("{path}.on"), load.on.as_deref().unwrap_or_default());
+        let Some(surface) = surface(&path, on, problems) else {
             continue;
         };
         of_one_body(&path, on, &surface, bodies, problems);
-        if let Some(amplitude) = amplitude {
-            loads.push(Load {
-                name: name.to_string(),
-                surface,
-                kind,
-                amplitude,
-            });
-        }
+        loads.extend(amplitude.map(|amplitude| Load {
+            name: name.to_string(),
+            surface,
+            kind,
+            amplitude,
+        }));
     }
     loads
 }
@@ -97,33 +94,44 @@ fn on_surfaces(
 fn nodal_loads(context: &Context, mesh: &Mesh, problems: &mut Problems) -> Vec<NodalLoad> {
     let mut loads = Vec::new();
     for (name, load) in context.case.load.iter() {
-        let path = format!("load.{name}");
-        if let Some(random) = &load.random {
-            loads.extend(random_loads(context, mesh, (name, load), random, problems));
-            continue;
-        }
-        let (force, moment) = match (&load.force, &load.moment) {
-            (Some(force), _) => {
-                let path = format!("{path}.force");
-                (problems.vector(mesh, &path, force), [0.0; 3])
+        match &load.random {
+            Some(random) => {
+                let random = random_loads(context, mesh, (name, load), random, problems);
+                loads.extend(random.into_iter().flatten());
             }
-            (None, Some(moment)) => ([0.0; 3], moment.si()),
-            (None, None) => continue,
-        };
-        let amplitude = load_amplitude(context, &path, load, problems);
-        let on = load.on.as_deref().unwrap_or_default();
-        let group = problems.group(mesh, &format!("{path}.on"), on);
-        if let (Some(amplitude), Some(group)) = (amplitude, group) {
-            loads.push(NodalLoad {
-                name: name.to_string(),
-                nodes: mesh.group_nodes(group),
-                force,
-                moment,
-                amplitude,
-            });
+            None => loads.extend(nodal_load(context, mesh, (name, load), problems)),
         }
     }
     loads
+}
+
+/// A force or a moment, if the load is one.
+fn nodal_load(
+    context: &Context,
+    mesh: &Mesh,
+    (name, load): (&str, &schema::Load),
+    problems: &mut Problems,
+) -> Option<NodalLoad> {
+    let path = format!("load.{name}");
+    let (force, moment) = match (&load.force, &load.moment) {
+        (Some(force), _) => {
+            let path = format!("{path}.force");
+            (problems.vector(mesh, &path, force), [0.0; 3])
+        }
+        (None, Some(moment)) => ([0.0; 3], moment.si()),
+        (None, None) => return None,
+    };
+    let amplitude = load_amplitude(context, &path, load, problems);
+    let on = load.on.as_deref().unwrap_or_default();
+    let group = problems.group(mesh, &format!("{path}.on"), on);
+    let (amplitude, group) = (amplitude?, group?);
+    Some(NodalLoad {
+        name: name.to_string(),
+        nodes: mesh.group_nodes(group),
+        force,
+        moment,
+        amplitude,
+    })
 }
 
 /// A random force along a line: one load for each node, with its own function of time.
@@ -133,23 +141,20 @@ fn random_loads(
     (name, load): (&str, &schema::Load),
     random: &schema::RandomForce,
     problems: &mut Problems,
-) -> Vec<NodalLoad> {
+) -> Option<Vec<NodalLoad>> {
     let path = format!("load.{name}");
     let directions = [("direction", &random.direction), ("along", &random.along)];
     let [direction, along] = directions
         .map(|(key, given)| lookup::normal(mesh, &format!("{path}.random.{key}"), given, problems));
     let on = load.on.as_deref().unwrap_or_default();
     let group = problems.group(mesh, &format!("{path}.on"), on);
-    let (Some(direction), Some(along), Some(group)) = (direction, along, group) else {
-        return Vec::new();
-    };
-    let mut nodes: Vec<(f64, u32, f64)> = integrals(mesh, group, &|_| 1.0)
-        .into_iter()
-        .map(|(node, measure)| {
-            let x = mesh.nodes[node as usize];
-            ((0..3).map(|i| along[i] * x[i]).sum(), node, measure)
-        })
-        .collect();
+    let (direction, along) = (direction?, along?);
+    let nodes = integrals(mesh, group?, &|_| 1.0).into_iter();
+    let nodes = nodes.map(|(node, measure)| {
+        let x = mesh.nodes[node as usize];
+        ((0..3).map(|i| along[i] * x[i]).sum(), node, measure)
+    });
+    let mut nodes: Vec<(f64, u32, f64)> = nodes.collect();
     nodes.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     let field = RandomField {
         spectrum: random
@@ -162,28 +167,24 @@ fn random_loads(
         seed: u64::from(random.seed),
     };
     let places: Vec<f64> = nodes.iter().map(|(place, ..)| *place).collect();
-    match field.at(&places) {
-        Ok(amplitudes) => {
-            let loads = nodes.iter().zip(amplitudes);
-            loads
-                .map(|(&(_, node, measure), amplitude)| NodalLoad {
-                    name: name.to_owned(),
-                    nodes: vec![node],
-                    force: direction.map(|n| measure * n),
-                    moment: [0.0; 3],
-                    amplitude,
-                })
-                .collect()
-        }
+    let amplitudes = match field.at(&places) {
+        Ok(amplitudes) => amplitudes,
         Err(error) => {
             let path = match &error {
                 Error::NotADensity { at } => format!("{path}.random.spectrum[{at}]"),
                 _ => format!("{path}.random.spectrum"),
             };
-            problems.push(Problem::new(path, error.to_string()));
-            Vec::new()
+            return problems.refuse(Problem::new(path, error.to_string()));
         }
-    }
+    };
+    let load = |(&(_, node, measure), amplitude): (&(f64, u32, f64), Amplitude)| NodalLoad {
+        name: name.to_owned(),
+        nodes: vec![node],
+        force: direction.map(|n| measure * n),
+        moment: [0.0; 3],
+        amplitude,
+    };
+    Some(nodes.iter().zip(amplitudes).map(load).collect())
 }
 
 /// Acceleration of the ground by direction.
@@ -262,8 +263,8 @@ fn of_one_body(
     let owners: Vec<&str> = owners.map(|body| body.spec.name.as_str()).collect();
     if owners.len() > 1 {
         let message = "a load acts on one body";
-        let problem = Problem::new(format!("{path}.on"), message)
-            .found(format!("{on}, of the bodies {}", owners.join(", ")));
+        let found = format!("{on}, of the bodies {}", owners.join(", "));
+        let problem = Problem::new(path, message).found(found);
         problems.push(problem.accepted(["a group of sides of one body"]));
     }
 }

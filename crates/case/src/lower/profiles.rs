@@ -79,8 +79,7 @@ fn profile_file(
             dimension: "length",
         },
     ];
-    let folder = context.folder;
-    let (points, lines) = columns::file_columns(&folder, path, &csv.file, keys, problems)?;
+    let (points, lines) = columns::file_columns(context.folder, path, &csv.file, keys, problems)?;
     Some((points, At::Lines(path.to_owned(), lines)))
 }
 

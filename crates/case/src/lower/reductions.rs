@@ -11,6 +11,7 @@ use carom_reduction::{Error, Keep, Source, reduce, reduce_from};
 use super::context::Context;
 use super::problems::Problems;
 use crate::error::Problem;
+use crate::schema::Body;
 
 /// Most bytes of a file of a reduction, 1 GiB.
 const LARGEST: u64 = 1 << 30;
@@ -23,75 +24,79 @@ pub(super) fn lower(
     links: &[ModelLink],
     problems: &mut Problems,
 ) -> Vec<(String, String)> {
-    let case = context.case;
+    let rows = links.iter().flat_map(|link| &link.rows);
+    let terms = rows.flat_map(|row| row.inner.iter().chain(&row.outer));
+    let nodes: Vec<u32> = terms.map(|term| term.node).collect();
     let mut sources = Vec::new();
-    for (number, (name, body)) in case.body.iter().enumerate() {
-        let Some(given) = &body.reduction else {
-            continue;
-        };
-        let path = format!("body.{name}.reduction");
-        if body.rigid.is_some() {
-            let problem = Problem::new(&path, "a rigid body has no modes");
-            problems.push(problem.accepted(["either `rigid` or `reduction`"]));
-            continue;
-        }
-        let rows = links.iter().flat_map(|link| &link.rows);
-        let terms = rows.flat_map(|row| row.inner.iter().chain(&row.outer));
-        let mut nodes: Vec<u32> = terms.map(|term| term.node).collect();
-        for group in &given.retain {
-            let path = format!("{path}.retain");
-            if let Some(group) = problems.group(&model.mesh, &path, group) {
-                nodes.extend(model.mesh.group_nodes(group));
-            }
-        }
-        let keep = Keep {
-            modes: given.modes as usize,
-            nodes,
-            massless: given.massless,
-            ratio: given.damping_ratio,
-            rayleigh: model
-                .nonlinear
-                .damping
-                .get(number)
-                .copied()
-                .unwrap_or_default(),
-        };
-        let Some(saved) = saved(&path, given.file.as_deref(), context.folder, problems) else {
-            continue;
-        };
-        let source = match given.file {
-            None => reduce(model, number, &keep).map(|()| None),
-            Some(_) => reduce_from(model, number, &keep, saved.as_deref()).map(Some),
-        };
-        match source {
-            Ok(source) => {
-                // it is part of the reduced matrices
-                if let Some(damping) = model.nonlinear.damping.get_mut(number) {
-                    *damping = Default::default();
-                }
-                if let (Some(source), Some(file)) = (source, &given.file) {
-                    let existed = saved.is_some();
-                    let told = kept(context, &path, file, (source, existed), problems);
-                    sources.extend(told.map(|told| (name.to_owned(), told)));
-                }
-            }
-            Err(error) => {
-                let path = match error {
-                    Error::Count { .. } => format!("{path}.modes"),
-                    Error::Saved { .. } => format!("{path}.file"),
-                    _ => path,
-                };
-                let problem = Problem::new(path, error.to_string());
-                problems.push(match error {
-                    Error::Count { exist, .. } => problem.accepted([format!("1 to {exist}")]),
-                    Error::Saved { .. } => problem
-                        .accepted(["a file that carom saved, or one that does not exist yet"]),
-                    _ => problem,
-                });
-            }
-        }
+    for (number, (name, body)) in context.case.body.iter().enumerate() {
+        let source = reduced(context, model, (number, body), &nodes, problems);
+        sources.extend(source.map(|source| (name.to_owned(), source)));
     }
     sources
+}
+
+/// Reduces one body, if it is to be; where its reduction comes from, if it has a file. `joined`: nodes of links.
+fn reduced(
+    context: &Context,
+    model: &mut Model,
+    (number, body): (usize, &Body),
+    joined: &[u32],
+    problems: &mut Problems,
+) -> Option<String> {
+    let given = body.reduction.as_ref()?;
+    let path = format!("body.{}.reduction", model.bodies[number].spec.name);
+    if body.rigid.is_some() {
+        let problem = Problem::new(&path, "a rigid body has no modes");
+        return problems.refuse(problem.accepted(["either `rigid` or `reduction`"]));
+    }
+    let mut nodes = joined.to_vec();
+    for group in &given.retain {
+        let path = format!("{path}.retain");
+        if let Some(group) = problems.group(&model.mesh, &path, group) {
+            nodes.extend(model.mesh.group_nodes(group));
+        }
+    }
+    let damping = model.nonlinear.damping.get(number).copied();
+    let keep = Keep {
+        modes: given.modes as usize,
+        nodes,
+        massless: given.massless,
+        ratio: given.damping_ratio,
+        rayleigh: damping.unwrap_or_default(),
+    };
+    let saved = saved(&path, given.file.as_deref(), context.folder, problems)?;
+    let source = match given.file {
+        None => reduce(model, number, &keep).map(|()| None),
+        Some(_) => reduce_from(model, number, &keep, saved.as_deref()).map(Some),
+    };
+    let source = match source {
+        Ok(source) => source,
+        Err(error) => return problems.refuse(not_reduced(&path, &error)),
+    };
+    // it is part of the reduced matrices
+    if let Some(damping) = model.nonlinear.damping.get_mut(number) {
+        *damping = Default::default();
+    }
+    kept(
+        context,
+        &path,
+        given.file.as_ref()?,
+        (source?, saved.is_some()),
+        problems,
+    )
+}
+
+/// The problem of a reduction that fails.
+fn not_reduced(path: &str, error: &Error) -> Problem {
+    let message = error.to_string();
+    match error {
+        Error::Count { exist, .. } => {
+            Problem::new(format!("{path}.modes"), message).accepted([format!("1 to {exist}")])
+        }
+        Error::Saved { .. } => Problem::new(format!("{path}.file"), message)
+            .accepted(["a file that carom saved, or one that does not exist yet"]),
+        _ => Problem::new(path, message),
+    }
 }
 
 /// The bytes of the file of a reduction, if there is one. `None` after a problem.

@@ -5,7 +5,7 @@ use carom_mesh::{ElementId, Mesh};
 use super::columns::{self, FileColumn};
 use super::context::Context;
 use super::lookup;
-use super::problems::Problems;
+use super::problems::{Problems, place};
 use crate::error::Problem;
 use crate::schema::{self, ThicknessColumns};
 
@@ -105,7 +105,7 @@ fn thickness_file(
     given: &ThicknessColumns,
     problems: &mut Problems,
 ) -> Option<Vec<f64>> {
-    let place = |i: usize| FileColumn {
+    let place_of = |i: usize| FileColumn {
         key: ["place[0]", "place[1]", "place[2]"][i],
         name: &given.place[i],
         unit_key: "place-unit",
@@ -119,9 +119,8 @@ fn thickness_file(
         unit: given.unit.as_ref(),
         dimension: "length",
     };
-    let keys = [place(0), place(1), place(2), thickness];
-    let folder = context.folder;
-    let (rows, lines) = columns::file_columns(&folder, path, &given.file, keys, problems)?;
+    let keys = [place_of(0), place_of(1), place_of(2), thickness];
+    let (rows, lines) = columns::file_columns(context.folder, path, &given.file, keys, problems)?;
     if let Some(k) = rows
         .iter()
         .position(|row| !(row[3] > 0.0 && row[3].is_finite()))
@@ -153,11 +152,9 @@ fn thickness_file(
     let Some(&first) = without.first() else {
         return Some(nodal);
     };
-    let [x, y, z] = mesh.nodes[first as usize];
-    let message = format!(
-        "nodes without a line in the file: {}, the first at ({x:.6}, {y:.6}, {z:.6}) m",
-        without.len()
-    );
+    let at = place(mesh.nodes[first as usize]);
+    let count = without.len();
+    let message = format!("nodes without a line in the file: {count}, the first at {at}");
     let problem = Problem::new(format!("{path}.file"), message);
     problems.refuse(problem.accepted(["a line at the place of each node of the body"]))
 }

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_arlequin::{Error, Rows, trace};
 use carom_dynamics::{ModelBody, ModelLink};
-use carom_mesh::{ElementId, Mesh, Surface};
+use carom_mesh::{ElementId, Mesh};
 use carom_zones::mortar_rows;
 
 use super::context::Context;
@@ -18,6 +18,28 @@ use crate::error::Problem;
 /// Largest distance of nodes at the same place, as a part of the size of the mesh.
 const COINCIDENT: f64 = 1e-9;
 
+/// A node of a zone.
+type ZoneNode = (usize, u32);
+
+/// A leader of each node, among those tied to it.
+type Tied = BTreeMap<ZoneNode, ZoneNode>;
+
+fn leader(tied: &Tied, mut node: ZoneNode) -> ZoneNode {
+    while let Some(&leader) = tied.get(&node)
+        && leader != node
+    {
+        node = leader;
+    }
+    node
+}
+
+fn tie(tied: &mut Tied, one: ZoneNode, other: ZoneNode) {
+    let (one, other) = (leader(tied, one), leader(tied, other));
+    if one != other {
+        tied.insert(one.max(other), one.min(other));
+    }
+}
+
 /// The nodes of the bodies, and which of them are tied so far.
 pub(super) struct Ties<'a> {
     mesh: &'a Mesh,
@@ -26,8 +48,7 @@ pub(super) struct Ties<'a> {
     zones: Vec<usize>,
     /// Nodes of each body.
     nodes: Vec<Vec<u32>>,
-    /// A leader of each zone's node, among those tied to it.
-    leader: BTreeMap<(usize, u32), (usize, u32)>,
+    tied: Tied,
 }
 
 impl<'a> Ties<'a> {
@@ -49,7 +70,7 @@ impl<'a> Ties<'a> {
                 .map(|body| plan.zone_of(body).unwrap_or(0))
                 .collect(),
             nodes: bodies.iter().map(nodes).collect(),
-            leader: BTreeMap::new(),
+            tied: Tied::new(),
         }
     }
 
@@ -74,35 +95,20 @@ impl<'a> Ties<'a> {
                 continue;
             };
             let ends = [(inner, one.node), (outer, other.node)];
-            if self.find(ends[0]) == self.find(ends[1]) {
+            if leader(&self.tied, ends[0]) == leader(&self.tied, ends[1]) {
                 known.insert((row.node, row.component));
             } else {
                 pairs.push(ends);
             }
         }
         for [one, other] in pairs {
-            self.tie(one, other);
+            tie(&mut self.tied, one, other);
         }
         rows.drop(|node, component| known.contains(&(node, component)))
     }
 
-    /// Ties the nodes that two surfaces share, which their rows hold together in the mean.
-    fn join_surfaces(&mut self, bodies: [usize; 2], [one, other]: &[Surface; 2]) {
-        let [inner, outer] = self.zones_of(bodies);
-        for &node in one.nodes.iter().filter(|&node| other.nodes.contains(node)) {
-            self.tie((inner, node), (outer, node));
-        }
-    }
-
     fn zones_of(&self, bodies: [usize; 2]) -> [usize; 2] {
         bodies.map(|body| self.zones[body])
-    }
-
-    fn tie(&mut self, one: (usize, u32), other: (usize, u32)) {
-        let (one, other) = (self.find(one), self.find(other));
-        if one != other {
-            self.leader.insert(one.max(other), one.min(other));
-        }
     }
 
     /// Pairs of bodies, by name, in different zones with nodes in common that are not tied, and these nodes.
@@ -116,7 +122,8 @@ impl<'a> Ties<'a> {
                 let zones = [self.zones[one], self.zones[other]];
                 let parted = |&node: &u32| {
                     self.nodes[other].binary_search(&node).is_ok()
-                        && self.find((zones[0], node)) != self.find((zones[1], node))
+                        && leader(&self.tied, (zones[0], node))
+                            != leader(&self.tied, (zones[1], node))
                 };
                 let nodes: Vec<u32> = self.nodes[one].iter().copied().filter(parted).collect();
                 if !nodes.is_empty() {
@@ -126,15 +133,6 @@ impl<'a> Ties<'a> {
             }
         }
         loose
-    }
-
-    fn find(&self, mut node: (usize, u32)) -> (usize, u32) {
-        while let Some(&leader) = self.leader.get(&node)
-            && leader != node
-        {
-            node = leader;
-        }
-        node
     }
 }
 
@@ -180,7 +178,12 @@ fn mortar(
         let problem = Problem::new(path, message).found(names.join(" and "));
         return problems.refuse(problem.accepted(["two surfaces that face each other"]));
     }
-    ties.join_surfaces(joint.bodies, &surfaces);
+    // their rows hold the nodes that they share together in the mean
+    let [inner, outer] = ties.zones_of(joint.bodies);
+    let [one, other] = &surfaces;
+    for &node in one.nodes.iter().filter(|&node| other.nodes.contains(node)) {
+        tie(&mut ties.tied, (inner, node), (outer, node));
+    }
     Some(rows)
 }
 
