@@ -86,7 +86,7 @@ fn overlap(
     });
     let (overlap, weights, mut rows) = match glued {
         Ok(glued) => glued,
-        Err(error) => return problems.refuse(unfit::unfit(joint, &error, &cells.concat())),
+        Err(error) => return problems.refuse(unfit::problem(joint, &error, &cells.concat())),
     };
     let sides = [Model::Inner, Model::Outer];
     let touched = sides.map(|model| overlap.touched(model));

@@ -112,7 +112,7 @@ fn body(
     let spin = beams::initial_spin(mesh, (path, given), &spec, problems);
     let rigid = match kinematics {
         Kinematics::Beam(_) | Kinematics::Shell(_) => None,
-        _ => rigid::rigid(mesh, path, given, &spec, problems),
+        _ => rigid::lower(mesh, path, given, &spec, problems),
     };
     Some(ModelBody {
         spec,

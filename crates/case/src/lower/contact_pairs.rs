@@ -11,7 +11,7 @@ use crate::error::Problem;
 
 /// Refuses contacts between faces that another contact joins in the same way: their stiffnesses add up, and their
 /// constraints are the same twice. Warns where the sides are exchanged.
-pub(super) fn listed_twice(contacts: &[ModelContact], problems: &mut Problems) {
+pub(super) fn check(contacts: &[ModelContact], problems: &mut Problems) {
     let sides = Sides::of(contacts);
     for (k, contact) in contacts.iter().enumerate() {
         for other in sides

@@ -105,7 +105,7 @@ pub(super) fn contacts_of_deleted(
 }
 
 /// Refuses bulk viscosity, mass scaling and deletion where they mean nothing.
-pub(super) fn explicit_alone(context: &Context, bodies: &[ModelBody], problems: &mut Problems) {
+pub(super) fn check(context: &Context, bodies: &[ModelBody], problems: &mut Problems) {
     for (number, body) in bodies.iter().enumerate() {
         let scheme = context.scheme_of(number);
         let explicit = scheme.get().is_explicit() && !context.case.time.is_static();

@@ -179,7 +179,7 @@ fn contacts(
     } = parts;
     let cells: Vec<Vec<ElementId>> = bodies.iter().map(|body| body.spec.cells.clone()).collect();
     let mut contacts = contacts::lower(context, mesh, bodies, &cells, problems);
-    contact_pairs::listed_twice(&contacts, problems);
+    contact_pairs::check(&contacts, problems);
     let of = general_sides::Of {
         context,
         mesh,
@@ -198,10 +198,10 @@ fn contacts(
         links: &joints.links,
         discrete,
     };
-    pieces::pieces(mesh, bodies, &joining, problems);
+    pieces::check(mesh, bodies, &joining, problems);
     nonlinear::in_zones(context, problems);
     nonlinear::stresses_between(context, bodies, problems);
-    explicit::explicit_alone(context, bodies, problems);
+    explicit::check(context, bodies, problems);
     arlequin::contacts_outside(context, mesh, &contacts, joints, problems);
     zones::laws(context, &contacts, &cells, problems);
     let points = discrete.iter().map(|some| some.spec.cells.clone());

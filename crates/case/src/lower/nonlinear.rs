@@ -129,7 +129,7 @@ pub(super) fn startable(context: &Context, system: &Arc<System>, problems: &mut 
         return;
     }
     if let Err(error) = Driver::new(Arc::clone(system)) {
-        let problem = refused::refused(context, &error);
+        let problem = refused::by_step(context, &error);
         problems.push(problem);
     }
 }

@@ -25,7 +25,7 @@ struct Oscillator<'a> {
 
 /// Warns of the stiffest mass on springs that the steps do not follow. Its period is that beside ends that stand: the true one is shorter.
 /// Links and zones have masses and steps of their own.
-pub(super) fn warn_of_oscillators(context: &Context, system: &System, problems: &mut Problems) {
+pub(super) fn check(context: &Context, system: &System, problems: &mut Problems) {
     let case = context.case;
     let linked = !case.rigid_link.is_empty() || !case.constraint.is_empty();
     if linked || !context.plan.zones.is_empty() || case.time.is_static() {

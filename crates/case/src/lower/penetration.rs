@@ -11,7 +11,7 @@ use crate::error::Problem;
 use crate::schema;
 
 /// Refuses contacts that penetrate at the start, in the initial displacement, or tells of them where the case lets them.
-pub(super) fn penetration(context: &Context, system: &System, problems: &mut Problems) {
+pub(super) fn at_start(context: &Context, system: &System, problems: &mut Problems) {
     let slack = system.tolerance.max(1e-9 * system.mesh.size());
     let places = system.places(0.0, &system.initial_displacement, &system.initial_frames);
     for (k, contact) in system.contacts.iter().enumerate() {

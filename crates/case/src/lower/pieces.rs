@@ -47,12 +47,7 @@ impl Joining<'_> {
 
 /// Warns of bodies in pieces that nothing joins, neither another body nor a contact, a tie or a spring, and names the closest nodes of
 /// two of them.
-pub(super) fn pieces(
-    mesh: &Mesh,
-    bodies: &[ModelBody],
-    joining: &Joining,
-    problems: &mut Problems,
-) {
+pub(super) fn check(mesh: &Mesh, bodies: &[ModelBody], joining: &Joining, problems: &mut Problems) {
     let parts = joining.parts(mesh, bodies);
     for body in bodies {
         let pieces = pieces_of(mesh, body, &parts);

@@ -99,7 +99,7 @@ fn probe(
 }
 
 /// Refuses probes of contacts where there is no contact point.
-pub(super) fn probes_at_contacts(probes: &[BuiltProbe], system: &System, problems: &mut Problems) {
+pub(super) fn at_contacts(probes: &[BuiltProbe], system: &System, problems: &mut Problems) {
     let wanted = |probe: &&BuiltProbe| probe.record.contains(&Motion::Contact);
     for probe in probes.iter().filter(wanted) {
         let has = |node: u32| {

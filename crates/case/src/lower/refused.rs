@@ -8,7 +8,7 @@ use crate::error::Problem;
 use crate::schema::{self, Section};
 
 /// The problem behind an error of the system or of its first step.
-pub(super) fn refused(context: &Context, error: &Error) -> Problem {
+pub(super) fn by_step(context: &Context, error: &Error) -> Problem {
     match error {
         Error::System(error) => refused_system(context, error),
         Error::Body(cause) => refused_body(cause),
@@ -38,10 +38,10 @@ pub(super) fn refused(context: &Context, error: &Error) -> Problem {
 }
 
 /// The problem behind an error of zones.
-pub(super) fn refused_zones(context: &Context, error: &carom_zones::Error) -> Problem {
+pub(super) fn by_zones(context: &Context, error: &carom_zones::Error) -> Problem {
     use carom_zones::Error;
     match error {
-        Error::Dynamics(error) => refused(context, error),
+        Error::Dynamics(error) => by_step(context, error),
         Error::System(error) => refused_system(context, error),
         Error::AcrossZones { contact, .. } => {
             Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
@@ -206,7 +206,7 @@ fn refused_zone(context: &Context, name: &str, cause: &Error) -> Problem {
                     format!("zone.{name}.substeps = {enough}"),
                 ])
         }
-        _ => refused(context, cause).note(format!("in the zone `{name}`")),
+        _ => by_step(context, cause).note(format!("in the zone `{name}`")),
     }
 }
 

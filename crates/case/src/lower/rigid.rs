@@ -13,7 +13,7 @@ use crate::error::Problem;
 use crate::schema::{Body, Mass, Rigid};
 
 /// What a body is as a rigid one; `None` for one that deforms.
-pub(super) fn rigid(
+pub(super) fn lower(
     mesh: &Mesh,
     path: &str,
     body: &Body,

@@ -32,14 +32,14 @@ pub(super) fn lower(
     contact_checks::able_to_act(&system, problems);
     contact_checks::with_area(context, &system, problems);
     probes::fine_enough(context, system.dt, problems);
-    oscillators::warn_of_oscillators(context, &system, problems);
-    penetration::penetration(context, &system, problems);
+    oscillators::check(context, &system, problems);
+    penetration::at_start(context, &system, problems);
     penetration::moved(context, &system, &nodes, problems);
     nonlinear::startable(context, &system, problems);
     contact_checks::advise(context, &system, &modelled.springs, problems);
     let levels = levels::lower(context, &system, problems);
     let allowables = allowables::lower(context, &system, problems);
-    probes::probes_at_contacts(&modelled.probes, &system, problems);
+    probes::at_contacts(&modelled.probes, &system, problems);
     let probes = probes::weighed(context, modelled.probes, &system, problems);
     let time = &context.case.time;
     let reference = reference::lower(context, &system, time.end.0, problems);
@@ -98,7 +98,7 @@ fn assembled(
             zoned,
             apart,
         }),
-        Err(error) => problems.refuse(refused::refused_zones(context, &error)),
+        Err(error) => problems.refuse(refused::by_zones(context, &error)),
     }
 }
 

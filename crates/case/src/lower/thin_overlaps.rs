@@ -32,7 +32,7 @@ pub(super) fn thin_overlap(
         Ok(glued) => glued,
         Err(Error::Overlap(error)) => {
             let all = specs.map(|spec| spec.cells.clone()).concat();
-            return problems.refuse(unfit::unfit(joint, &error, &all));
+            return problems.refuse(unfit::problem(joint, &error, &all));
         }
         Err(error) => {
             return problems.refuse(Problem::new(path, error.to_string()));

@@ -10,7 +10,7 @@ use super::problems::Problems;
 use crate::error::Problem;
 
 /// The rows between two surfaces whose nodes need not match, ([`mortar_rows`]). `sides`: cells that may have such surfaces.
-pub(super) fn tied(
+pub(super) fn lower(
     (mesh, bodies): (&Mesh, &[ModelBody]),
     (name, path): (&str, &str),
     names: &[String; 2],

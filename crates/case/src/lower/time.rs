@@ -190,7 +190,7 @@ fn critical(
             let steps = outer.map(|(_, system)| system.critical_step());
             Some(steps.fold(f64::INFINITY, f64::min))
         }
-        Err(error) => problems.refuse(refused::refused_zones(context, &error)),
+        Err(error) => problems.refuse(refused::by_zones(context, &error)),
     }
 }
 

@@ -52,7 +52,7 @@ pub(super) fn lower(
     for (name, given) in context.case.transition.iter() {
         let path = format!("transition.{name}");
         if let Some(surfaces) = &given.surfaces {
-            all.extend(tied::tied(
+            all.extend(tied::lower(
                 (mesh, bodies),
                 (name, &path),
                 surfaces,

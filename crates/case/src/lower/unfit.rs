@@ -48,7 +48,7 @@ pub(super) fn full_rank(joint: &Joint, bodies: &[ModelBody], rows: &Rows, proble
 }
 
 /// The problem behind an error of an overlap. `all`: cells of both bodies.
-pub(super) fn unfit(joint: &Joint, error: &Error, all: &[ElementId]) -> Problem {
+pub(super) fn problem(joint: &Joint, error: &Error, all: &[ElementId]) -> Problem {
     let (key, cells, accepted): (&str, &[ElementId], &str) = match error {
         Error::NotCovered { cells, .. } => {
             (".overlap", cells, "a group of cells that both bodies cover")
