@@ -48,7 +48,7 @@ fn deletes(context: &Context, path: &str, material: &Law, problems: &mut Problem
 }
 
 /// Refuses contacts that deletion leaves without faces or areas.
-pub(super) fn contacts_of_deleted(
+pub(super) fn check_contacts(
     context: &Context,
     bodies: &[ModelBody],
     contacts: &[ModelContact],

@@ -8,7 +8,7 @@ use carom_mesh::{ElementId, Surface};
 
 use super::contacts::{has_quadratic_faces, mortar};
 use super::context::Context;
-use super::general_sides::{self, Of, Part, folds};
+use super::general_sides::{self, Part, Scope, folds};
 use super::laws::{self, sides};
 use super::problems::Problems;
 use super::zones;
@@ -29,20 +29,20 @@ struct Apart {
 }
 
 /// The contacts of the general contact; it leaves out pairs that other contacts and joints join.
-pub(super) fn lower(of: &Of, problems: &mut Problems) -> Vec<ModelContact> {
-    let Some(given) = &of.context.case.general_contact else {
+pub(super) fn lower(scope: &Scope, problems: &mut Problems) -> Vec<ModelContact> {
+    let Some(given) = &scope.context.case.general_contact else {
         return Vec::new();
     };
-    check_pairs(of.context, given, problems);
-    let mut parts = general_sides::parts(of, problems);
-    let apart = kept_apart(of, &parts);
+    check_pairs(scope.context, given, problems);
+    let mut parts = general_sides::parts(scope, problems);
+    let apart = kept_apart(scope, &parts);
     if given.by == GeneralBy::Materials {
-        parts = general_sides::by_materials(of, parts, problems);
+        parts = general_sides::by_materials(scope, parts, problems);
     }
     let mut contacts = Vec::new();
     for (k, one) in parts.iter().enumerate() {
         for other in &parts[k..] {
-            contacts.extend(between(of, given, [one, other], &apart, problems));
+            contacts.extend(between(scope, given, [one, other], &apart, problems));
         }
     }
     if contacts.is_empty() {
@@ -61,9 +61,9 @@ pub(super) fn lower(of: &Of, problems: &mut Problems) -> Vec<ModelContact> {
 }
 
 /// What is in no contact with each other.
-fn kept_apart(of: &Of, parts: &[Part]) -> Apart {
-    let case = of.context.case;
-    let cells = of.cells.iter().enumerate();
+fn kept_apart(scope: &Scope, parts: &[Part]) -> Apart {
+    let case = scope.context.case;
+    let cells = scope.cells.iter().enumerate();
     let owners: BTreeMap<ElementId, usize> = cells
         .flat_map(|(body, cells)| cells.iter().map(move |&cell| (cell, body)))
         .collect();
@@ -89,7 +89,7 @@ fn kept_apart(of: &Of, parts: &[Part]) -> Apart {
             joined.extend(other.iter().map(|&b| [a.min(b), a.max(b)]));
         }
     };
-    for contact in of.named {
+    for contact in scope.named {
         if let ModelTarget::Surface(primary) = &contact.primary {
             let of = |surface: &Surface| {
                 let faces = surface.faces.iter();
@@ -101,9 +101,9 @@ fn kept_apart(of: &Of, parts: &[Part]) -> Apart {
         }
     }
     let with = |group: &String| -> BTreeSet<usize> {
-        let group = of.mesh.groups.get(group);
+        let group = scope.mesh.groups.get(group);
         let of_group = group
-            .map(|group| of.mesh.group_nodes(group))
+            .map(|group| scope.mesh.group_nodes(group))
             .unwrap_or_default();
         let known = of_group.iter().flat_map(|node| {
             let first = nodes.partition_point(|(other, _)| other < node);
@@ -159,15 +159,15 @@ fn check_pairs(context: &Context, given: &GeneralContact, problems: &mut Problem
 }
 
 /// The contact between two bodies, or of a body with itself where it can fold; none between bodies that share nodes or that something
-/// else joins. Of several bodies on a side those that do not touch are left out by pairs.
+/// else joins. Scope several bodies on a side those that do not touch are left out by pairs.
 fn between(
-    of: &Of,
+    scope: &Scope,
     given: &GeneralContact,
     [one, other]: [&Part; 2],
     apart: &Apart,
     problems: &mut Problems,
 ) -> Option<ModelContact> {
-    let case = of.context.case;
+    let case = scope.context.case;
     let [first, second] = [one, other].map(|part| part.name.as_str());
     let itself = one.bodies == other.bodies;
     let many = one.bodies.len() + other.bodies.len() > 2;
@@ -199,9 +199,9 @@ fn between(
         false => (other, one),
     };
     let target = ModelTarget::Surface(primary.surface.clone());
-    let both = sides(of.mesh, of.bodies, &secondary.surface, &target);
+    let both = sides(scope.mesh, scope.bodies, &secondary.surface, &target);
     let first = secondary.surface.faces.first().map(|face| face.parent);
-    let scheme = zones::scheme_at(of.context, first, of.cells);
+    let scheme = zones::scheme_at(scope.context, first, scope.cells);
     let (law, friction) = of_materials(given, [&one.material, &other.material]);
     let law = laws::law(&name, law, (&both, &scheme), problems)?;
     let round = one.is_round() || other.is_round();
@@ -212,7 +212,7 @@ fn between(
     let deletes = [one, other]
         .iter()
         .any(|part| part.body.spec.deletion.is_some());
-    let parts = many.then(|| apart.parts((secondary, primary), |body| folds(&of.bodies[body])));
+    let parts = many.then(|| apart.parts((secondary, primary), |body| folds(&scope.bodies[body])));
     Some(ModelContact {
         parts,
         sliding: Sliding::Finite,

@@ -13,7 +13,7 @@ use super::problems::Problems;
 use super::shells::around_shells;
 
 /// What the general contact is of.
-pub(super) struct Of<'a> {
+pub(super) struct Scope<'a> {
     pub(super) context: &'a Context<'a>,
     pub(super) mesh: &'a Mesh,
     pub(super) bodies: &'a [ModelBody],
@@ -86,15 +86,15 @@ impl<'a> Part<'a> {
 }
 
 /// Bodies with an outer side; a warning names the others.
-pub(super) fn parts<'a>(of: &Of<'a>, problems: &mut Problems) -> Vec<Part<'a>> {
-    let Of { mesh, bodies, .. } = *of;
+pub(super) fn parts<'a>(scope: &Scope<'a>, problems: &mut Problems) -> Vec<Part<'a>> {
+    let Scope { mesh, bodies, .. } = *scope;
     let mut parts = Vec::new();
     for (number, body) in bodies.iter().enumerate() {
         let name = &body.spec.name;
-        let given = of.context.case.body.get(name);
+        let given = scope.context.case.body.get(name);
         let material = given.map(|given| given.material.to_string());
         let side = outer_side(mesh, bodies, (body.spec.kinematics, &body.spec.cells));
-        let side = side.and_then(|side| outside(side, of.joints));
+        let side = side.and_then(|side| outside(side, scope.joints));
         let (material, surface) = match (material, side) {
             (Some(material), Ok(surface)) => (material, surface),
             (_, cause) => {
@@ -112,15 +112,15 @@ pub(super) fn parts<'a>(of: &Of<'a>, problems: &mut Problems) -> Vec<Part<'a>> {
 
 /// Puts bodies together that one contact takes: of one material, one section and one zone.
 pub(super) fn by_materials<'a>(
-    of: &Of<'a>,
+    scope: &Scope<'a>,
     parts: Vec<Part<'a>>,
     problems: &mut Problems,
 ) -> Vec<Part<'a>> {
-    let Of { mesh, bodies, .. } = *of;
+    let Scope { mesh, bodies, .. } = *scope;
     let mut together: Vec<Vec<Part>> = Vec::new();
     for part in parts {
         let mut known = together.iter_mut();
-        match known.find(|others| others[0].goes_with(&part, of.context.plan)) {
+        match known.find(|others| others[0].goes_with(&part, scope.context.plan)) {
             Some(others) => others.push(part),
             None => together.push(vec![part]),
         }
@@ -144,7 +144,7 @@ pub(super) fn by_materials<'a>(
                 cells.sort_unstable();
                 // bodies that share nodes have no outer side between them
                 let whole = outer_side(mesh, bodies, (body.spec.kinematics, &cells));
-                match whole.and_then(|whole| outside(whole, of.joints)) {
+                match whole.and_then(|whole| outside(whole, scope.joints)) {
                     Ok(surface) => Part::new(mesh, (body, material), numbers, surface),
                     Err(cause) => {
                         problems.doubt(format!(

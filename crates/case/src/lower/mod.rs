@@ -91,13 +91,9 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
 /// # Errors
 /// As [`build`].
 pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    let given = Given {
-        case,
-        locator,
-        input,
-        saves: false,
-    };
-    given.lowered(|context, problems| system::lower(context, &[], problems))
+    lowered(case, locator, (input, false), |context, problems| {
+        system::lower(context, &[], problems)
+    })
 }
 
 /// As [`build`], with forces that are in no case file.
@@ -110,13 +106,9 @@ pub fn build_with(
     input: &Input,
     forces: &[AddedForce],
 ) -> Result<Built, Vec<Problem>> {
-    let given = Given {
-        case,
-        locator,
-        input,
-        saves: true,
-    };
-    given.lowered(|context, problems| system::lower(context, forces, problems))
+    lowered(case, locator, (input, true), |context, problems| {
+        system::lower(context, forces, problems)
+    })
 }
 
 /// The model of a case without zones, for another rank than the first, which builds its part of it ([`Driver::beside`](carom_dynamics::Driver::beside)).
@@ -125,47 +117,33 @@ pub fn build_with(
 /// # Errors
 /// As [`build`], but for what the system tells.
 pub fn model(case: &Case, locator: &Locator, input: &Input) -> Result<Model, Vec<Problem>> {
-    let given = Given {
-        case,
-        locator,
-        input,
-        saves: true,
-    };
-    given.lowered(|context, problems| {
+    lowered(case, locator, (input, true), |context, problems| {
         let modelled = model::lower(context, &[], problems)?;
         Some(model::in_one(context, modelled.model))
     })
 }
 
-/// A case, and whether a reduction that is made anew is saved in its file.
-struct Given<'a> {
-    case: &'a Case,
-    locator: &'a Locator,
-    input: &'a Input,
-    saves: bool,
-}
-
-impl Given<'_> {
-    /// What `lower` makes of the case, or the problems with their places.
-    fn lowered<T>(
-        &self,
-        lower: impl FnOnce(&Context, &mut Problems) -> Option<T>,
-    ) -> Result<T, Vec<Problem>> {
-        let mut problems = Problems::default();
-        let plan = zones::lower(self.case, &mut problems);
-        let signals = signals::lower(self.case, &self.input.folder, &mut problems);
-        let file = self.input.sources.first();
-        let context = Context {
-            case: self.case,
-            signals: &signals,
-            plan: &plan,
-            file: Path::new(file.map_or("", |source| &source.name)),
-            folder: &self.input.folder,
-            saves: self.saves,
-        };
-        match lower(&context, &mut problems) {
-            Some(lowered) if problems.is_empty() => Ok(lowered),
-            _ => Err(self.locator.locate_all(problems.all)),
-        }
+/// What `lower` makes of a case, or the problems with their places. `saves`: whether a reduction that is made anew is saved in its file.
+fn lowered<T>(
+    case: &Case,
+    locator: &Locator,
+    (input, saves): (&Input, bool),
+    lower: impl FnOnce(&Context, &mut Problems) -> Option<T>,
+) -> Result<T, Vec<Problem>> {
+    let mut problems = Problems::default();
+    let plan = zones::lower(case, &mut problems);
+    let signals = signals::lower(case, &input.folder, &mut problems);
+    let file = input.sources.first();
+    let context = Context {
+        case,
+        signals: &signals,
+        plan: &plan,
+        file: Path::new(file.map_or("", |source| &source.name)),
+        folder: &input.folder,
+        saves,
+    };
+    match lower(&context, &mut problems) {
+        Some(lowered) if problems.is_empty() => Ok(lowered),
+        _ => Err(locator.locate_all(problems.all)),
     }
 }

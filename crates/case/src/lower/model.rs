@@ -8,6 +8,7 @@ use carom_mesh::{ElementId, Mesh};
 use super::added::{self, AddedForce};
 use super::built::BuiltProbe;
 use super::context::Context;
+use super::general_sides::Scope;
 use super::hinged::{self, Joined};
 use super::joints::Joints;
 use super::laws::{self, Spring};
@@ -18,8 +19,8 @@ use super::supports::{self, Held};
 use super::time::{self, Size};
 use super::{
     arlequin, bodies, constraints, contact_pairs, contacts, damped, discrete, explicit, fluids,
-    general, general_sides, materials, mesh, nonlinear, pretensions, probes, reductions, stops,
-    transitions, zones,
+    general, materials, mesh, nonlinear, pretensions, probes, reductions, stops, transitions,
+    zones,
 };
 
 /// A model, and what is built of a case beside it.
@@ -41,7 +42,8 @@ pub(super) fn lower(
 ) -> Option<Modelled> {
     let mut parts = parts(context, forces, problems)?;
     let joints = joints(context, &mut parts, problems);
-    let contacts = contacts(context, &parts, &joints, problems)?;
+    let contacts = contacts(context, &parts, &joints, problems);
+    check(context, &parts, &joints, &contacts, problems)?;
     let springs = laws::springs(context, &parts.mesh, &parts.bodies, &contacts);
     let Parts {
         supports, loads, ..
@@ -118,20 +120,15 @@ fn parts(context: &Context, forces: &[AddedForce], problems: &mut Problems) -> O
     let mut bodies = bodies::lower(context, &mesh, &materials, problems);
     let mut discrete = discrete::lower(context, &mut mesh, problems);
     discrete.extend(fluids::lower(context, &mut mesh, problems));
-    discrete.extend(pretensions::lower(
-        context,
-        &mut mesh,
-        &mut bodies,
-        problems,
-    ));
+    let bolts = pretensions::lower(context, &mut mesh, &mut bodies, problems);
+    discrete.extend(bolts);
     let mut constraints = constraints::lower(context, &mesh, &bodies, problems);
     let transitions = transitions::lower(context, &mesh, &bodies, problems);
     constraints.extend(transitions.constraints);
     let supports = supports::lower(context, &mesh, problems);
     let mut loads = loads::lower(context, &mesh, &bodies, problems);
-    loads
-        .nodal
-        .extend(added::lower(context, &mesh, forces, problems));
+    let added = added::lower(context, &mesh, forces, problems);
+    loads.nodal.extend(added);
     let probes = probes::lower(context, &mesh, &bodies, problems);
     probes::formats(context, problems);
     problems.is_empty().then_some(Parts {
@@ -164,23 +161,18 @@ fn joints(context: &Context, parts: &mut Parts, problems: &mut Problems) -> Join
     joints
 }
 
-/// The contacts, and what all sections must be together.
+/// The contacts of the case, those of the general contact and those of stops.
 fn contacts(
     context: &Context,
     parts: &Parts,
     joints: &Joints,
     problems: &mut Problems,
-) -> Option<Vec<ModelContact>> {
-    let Parts {
-        mesh,
-        bodies,
-        discrete,
-        ..
-    } = parts;
-    let cells: Vec<Vec<ElementId>> = bodies.iter().map(|body| body.spec.cells.clone()).collect();
+) -> Vec<ModelContact> {
+    let Parts { mesh, bodies, .. } = parts;
+    let cells = cells_of(bodies);
     let mut contacts = contacts::lower(context, mesh, bodies, &cells, problems);
     contact_pairs::check(&contacts, problems);
-    let of = general_sides::Of {
+    let scope = Scope {
         context,
         mesh,
         bodies,
@@ -188,12 +180,30 @@ fn contacts(
         named: &contacts,
         joints,
     };
-    let general = general::lower(&of, problems);
+    let general = general::lower(&scope, problems);
     contacts.extend(general);
-    explicit::contacts_of_deleted(context, bodies, &contacts, problems);
-    contacts.extend(stops::lower(context, mesh, bodies, discrete, problems));
+    explicit::check_contacts(context, bodies, &contacts, problems);
+    let stops = stops::lower(context, mesh, bodies, &parts.discrete, problems);
+    contacts.extend(stops);
+    contacts
+}
+
+/// What sections must be together.
+fn check(
+    context: &Context,
+    parts: &Parts,
+    joints: &Joints,
+    contacts: &[ModelContact],
+    problems: &mut Problems,
+) -> Option<()> {
+    let Parts {
+        mesh,
+        bodies,
+        discrete,
+        ..
+    } = parts;
     let joining = Joining {
-        contacts: &contacts,
+        contacts,
         constraints: &parts.constraints,
         links: &joints.links,
         discrete,
@@ -202,10 +212,15 @@ fn contacts(
     nonlinear::in_zones(context, problems);
     nonlinear::stresses_between(context, bodies, problems);
     explicit::check(context, bodies, problems);
-    arlequin::contacts_outside(context, mesh, &contacts, joints, problems);
-    zones::laws(context, &contacts, &cells, problems);
-    let points = discrete.iter().map(|some| some.spec.cells.clone());
-    let all: Vec<_> = cells.iter().cloned().chain(points).collect();
-    probes::within_bodies(context, mesh, &parts.probes, &all, problems);
-    problems.is_empty().then_some(contacts)
+    arlequin::contacts_outside(context, mesh, contacts, joints, problems);
+    let mut cells = cells_of(bodies);
+    zones::laws(context, contacts, &cells, problems);
+    cells.extend(discrete.iter().map(|some| some.spec.cells.clone()));
+    probes::within_bodies(context, mesh, &parts.probes, &cells, problems);
+    problems.is_empty().then_some(())
+}
+
+/// Cells of each body.
+fn cells_of(bodies: &[ModelBody]) -> Vec<Vec<ElementId>> {
+    bodies.iter().map(|body| body.spec.cells.clone()).collect()
 }
