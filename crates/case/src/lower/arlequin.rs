@@ -28,7 +28,7 @@ pub(super) fn lower(
     for (name, given) in context.case.arlequin.iter() {
         let path = format!("arlequin.{name}");
         let names = [&given.inner[..], &given.outer];
-        let Some(numbers) = Joint::bodies(context, &path, names, problems) else {
+        let Some(numbers) = lookup::bodies(context.case, &path, names, problems) else {
             continue;
         };
         let joint = Joint {

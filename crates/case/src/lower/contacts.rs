@@ -12,7 +12,7 @@ use super::laws::{self, sides};
 use super::problems::Problems;
 use super::{discrete, lookup, obstacles, surfaces, zones};
 use crate::error::Problem;
-use crate::schema::{self, Basis, Friction, IntegrationName, IntegrationWith, Penetration};
+use crate::schema::{self, Basis, IntegrationName, IntegrationWith, Penetration};
 
 /// The bodies on which contacts are.
 struct Bodies<'a> {
@@ -101,9 +101,7 @@ fn contact(
         },
         integration,
         massless: given.nodes == schema::Nodes::Massless,
-        friction: given
-            .friction
-            .map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
+        friction: laws::coefficient(given.friction),
         // a contact that may not penetrate is looked at here, where more can be said
         initial: match given.initial {
             Penetration::Refuse => Initial::Touch,

@@ -159,7 +159,7 @@ fn check_pairs(context: &Context, given: &GeneralContact, problems: &mut Problem
 }
 
 /// The contact between two bodies, or of a body with itself where it can fold; none between bodies that share nodes or that something
-/// else joins. Scope several bodies on a side those that do not touch are left out by pairs.
+/// else joins. Of several bodies on a side those that do not touch are left out by pairs.
 fn between(
     scope: &Scope,
     given: &GeneralContact,
@@ -220,7 +220,7 @@ fn between(
             true => mortar(Basis::default()),
             false => Integration::Node,
         },
-        friction: friction.map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
+        friction: laws::coefficient(friction),
         initial: Initial::Touch,
         near_only: !deletes,
         // surfaces around axes and middles have none, one that faces itself has its own

@@ -9,7 +9,6 @@ use carom_mesh::{ElementId, Mesh};
 
 use super::context::Context;
 use super::held::Held;
-use super::lookup;
 use super::problems::{Problems, plural, with_cells};
 use crate::error::Problem;
 use crate::offenders::Offenders;
@@ -55,19 +54,6 @@ pub(super) struct Joint<'a> {
 }
 
 impl Joint<'_> {
-    /// The numbers of the inner and the outer body of a joint.
-    pub(super) fn bodies(
-        context: &Context,
-        path: &str,
-        names: [&str; 2],
-        problems: &mut Problems,
-    ) -> Option<[usize; 2]> {
-        let mut body =
-            |key, name| lookup::body(context.case, &format!("{path}.{key}"), name, problems);
-        let (inner, outer) = (body("inner", names[0]), body("outer", names[1]));
-        Some([inner?, outer?])
-    }
-
     /// Its link, where zones have its bodies.
     pub(super) fn link(&self, rows: Rows) -> Option<ModelLink> {
         let [inner, outer] = self.bodies.map(|body| self.context.plan.zone_of(body));

@@ -1,7 +1,7 @@
 //! Bodies, nodes, surfaces and directions by what a case says of them.
 
 use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
-use carom_mesh::{ElementId, Face, Mesh, Surface};
+use carom_mesh::{Bounds, ElementId, Face, Mesh, Surface};
 
 use super::problems::{Problems, dimensions, plural};
 use crate::error::Problem;
@@ -16,6 +16,18 @@ pub(super) fn body(case: &Case, path: &str, name: &str, problems: &mut Problems)
         problems.push(problem.unknown(name, names));
     }
     number
+}
+
+/// The numbers of the inner and the outer body of a joint; `path`: its key.
+pub(super) fn bodies(
+    case: &Case,
+    path: &str,
+    [inner, outer]: [&str; 2],
+    problems: &mut Problems,
+) -> Option<[usize; 2]> {
+    let inner = body(case, &format!("{path}.inner"), inner, problems);
+    let outer = body(case, &format!("{path}.outer"), outer, problems);
+    Some([inner?, outer?])
 }
 
 /// The node of a group of one.
@@ -135,4 +147,15 @@ pub(super) fn faces_of(contact: &ModelContact) -> [&[Face]; 2] {
 pub(super) fn middle(mesh: &Mesh, nodes: &[u32]) -> [f64; 3] {
     let places = || nodes.iter().map(|&node| mesh.nodes[node as usize]);
     [0, 1, 2].map(|i| places().map(|x| x[i]).sum::<f64>() / nodes.len() as f64)
+}
+
+/// Diagonal of the box around nodes, m.
+pub(super) fn diagonal(mesh: &Mesh, nodes: &[u32]) -> f64 {
+    let places: Vec<[f64; 3]> = nodes
+        .iter()
+        .map(|&node| mesh.nodes[node as usize])
+        .collect();
+    let bounds = Bounds::of(&places);
+    let squares = (0..3).map(|i| (bounds.max[i] - bounds.min[i]).powi(2));
+    squares.sum::<f64>().sqrt()
 }

@@ -2,7 +2,7 @@
 
 use carom_zones::{LinkKind, ModelZone};
 
-use crate::schema::Scheme;
+use crate::schema::{Case, Link, Scheme};
 
 /// A zone as the case says it, names resolved.
 #[derive(Clone, Debug)]
@@ -56,4 +56,28 @@ impl Plan {
         };
         self.zones.iter().map(zone).collect()
     }
+}
+
+/// An overlap or a border, as the case says it.
+pub(super) struct Pair<'a> {
+    /// Its key.
+    pub(super) path: String,
+    /// Names of the inner and the outer body.
+    pub(super) bodies: [&'a str; 2],
+    pub(super) link: Option<Link>,
+}
+
+/// Overlaps and borders, in this order.
+pub(super) fn pairs(case: &Case) -> impl Iterator<Item = Pair<'_>> {
+    let overlaps = case.arlequin.iter().map(|(name, joint)| Pair {
+        path: format!("arlequin.{name}"),
+        bodies: [&joint.inner, &joint.outer],
+        link: joint.link,
+    });
+    let borders = case.interface.iter().map(|(name, joint)| Pair {
+        path: format!("interface.{name}"),
+        bodies: [&joint.inner, &joint.outer],
+        link: joint.link,
+    });
+    overlaps.chain(borders)
 }

@@ -9,6 +9,7 @@ use carom_exact::{Bar, Impact, Solution};
 use carom_materials::Plane;
 
 use super::context::Context;
+use super::plan;
 use super::problems::Problems;
 use crate::error::Problem;
 use crate::schema::{Case, Reference, Sides};
@@ -62,11 +63,9 @@ fn joined(context: &Context, system: &System, body: usize) -> Vec<usize> {
     let case = context.case;
     let names: Vec<&str> = case.body.names().collect();
     let number = |name: &str| names.iter().position(|one| *one == name);
-    let overlaps = case.arlequin.iter().map(|(_, j)| (&j.inner, &j.outer));
-    let borders = case.interface.iter().map(|(_, j)| (&j.inner, &j.outer));
-    let pairs: Vec<(usize, usize)> = overlaps
-        .chain(borders)
-        .filter_map(|(inner, outer)| Some((number(inner)?, number(outer)?)))
+    let joints = plan::pairs(case).map(|pair| pair.bodies);
+    let pairs: Vec<(usize, usize)> = joints
+        .filter_map(|[inner, outer]| Some((number(inner)?, number(outer)?)))
         .chain(tied_bodies(context, system))
         .collect();
     let mut all = vec![body];
@@ -105,19 +104,27 @@ fn foreign(case: &Case) -> Option<&'static str> {
     let mut supports = case.support.iter();
     let mut loads = case.load.iter();
     let mut contacts = case.contact.iter();
-    if bodies.any(|(_, body)| body.damping.is_some()) {
-        Some("damping of a body")
-    } else if supports.any(|(_, support)| support.motion.is_some()) {
-        Some("support that moves")
-    } else if loads.any(|(_, load)| load.acceleration.is_none()) {
-        Some("load but gravity")
-    } else if case.time.stage.is_some() {
-        Some("static stage")
-    } else if contacts.any(|(_, contact)| contact.friction.is_some()) {
-        Some("friction")
-    } else {
-        None
-    }
+    let all = [
+        (
+            bodies.any(|(_, body)| body.damping.is_some()),
+            "damping of a body",
+        ),
+        (
+            supports.any(|(_, support)| support.motion.is_some()),
+            "support that moves",
+        ),
+        (
+            loads.any(|(_, load)| load.acceleration.is_none()),
+            "load but gravity",
+        ),
+        (case.time.stage.is_some(), "static stage"),
+        (
+            contacts.any(|(_, contact)| contact.friction.is_some()),
+            "friction",
+        ),
+    ];
+    let (_, what) = all.into_iter().find(|(there, _)| *there)?;
+    Some(what)
 }
 
 /// The solution, and the contact normal, which points from the primary side to the secondary one. `joined`:

@@ -8,7 +8,7 @@ use carom_output::plot::quantity;
 use carom_quantities::MomentOfInertia;
 
 use super::oscillators;
-use super::problems::Problems;
+use super::problems::{Problems, Refusal};
 use crate::error::Problem;
 use crate::schema::{Body, Mass, Rigid};
 
@@ -139,20 +139,19 @@ pub(super) fn moments(
 
 /// Refuses keys of bodies that deform.
 fn suits_rigid(path: &str, body: &Body, problems: &mut Problems) {
-    let refused = [
-        (
-            "damping",
-            body.damping.is_some(),
-            "a rigid body has no damping",
-        ),
-        (
-            "mass",
-            body.mass == Some(Mass::Consistent),
-            "a rigid body has one mass, and no mass matrix of its cells",
-        ),
+    let table = [
+        Refusal {
+            is: body.damping.is_some(),
+            key: "damping",
+            message: "a rigid body has no damping",
+            accepted: &["no `damping`"],
+        },
+        Refusal {
+            is: body.mass == Some(Mass::Consistent),
+            key: "mass",
+            message: "a rigid body has one mass, and no mass matrix of its cells",
+            accepted: &["no `mass`"],
+        },
     ];
-    for (key, _, message) in refused.iter().filter(|(_, wrong, _)| *wrong) {
-        let problem = Problem::new(format!("{path}.{key}"), *message);
-        problems.push(problem.accepted([format!("no `{key}`")]));
-    }
+    problems.refuse_each(path, &table);
 }

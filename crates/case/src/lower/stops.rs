@@ -7,11 +7,11 @@ use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::context::Context;
 use super::discrete::{self, End};
-use super::laws::{default_capture, no_curve};
+use super::laws::{coefficient, default_capture, no_curve};
 use super::problems::Problems;
 use super::{lookup, obstacles};
 use crate::error::Problem;
-use crate::schema::{Force, Friction, Length, Scheme, Stop};
+use crate::schema::{Force, Length, Scheme, Stop};
 
 /// What a stop joins.
 struct Facing {
@@ -93,9 +93,7 @@ fn stop(
     Some(ModelContact {
         initial: facing.initial,
         sliding: facing.sliding,
-        friction: given
-            .friction
-            .map_or(0.0, |Friction::Coulomb(coefficient)| coefficient),
+        friction: coefficient(given.friction),
         ..ModelContact::new(name, secondary, primary, law)
     })
 }

@@ -10,7 +10,7 @@ use super::lookup::{self, AXES};
 use super::problems::Problems;
 use super::{beams, course, signals};
 use crate::error::Problem;
-use crate::schema::{Case, Movement, MovementCourse};
+use crate::schema::{Axis, Case, Movement, MovementCourse};
 
 /// What supports hold and move.
 #[derive(Default)]
@@ -25,13 +25,7 @@ pub(super) struct Held {
 pub(super) fn named(case: &Case, mesh: &Mesh) -> Vec<NamedSupport> {
     let named = case.support.iter().filter_map(|(name, support)| {
         let nodes = mesh.group_nodes(mesh.groups.get(&support.on)?);
-        let (mut axes, mut rotations) = ([false; 3], [false; 3]);
-        for (axis, turns) in support.fix.iter().map(|axis| axis.index()) {
-            match turns {
-                true => rotations[axis] = true,
-                false => axes[axis] = true,
-            }
-        }
+        let [mut axes, mut rotations] = fixed(&support.fix);
         if let Some(motion) = &support.motion {
             let moved = [&motion.x, &motion.y, &motion.z].map(|points| points.is_some());
             let turned = [&motion.rx, &motion.ry, &motion.rz].map(|points| points.is_some());
@@ -46,6 +40,15 @@ pub(super) fn named(case: &Case, mesh: &Mesh) -> Vec<NamedSupport> {
         })
     });
     named.collect()
+}
+
+/// Translations and rotations among some axes.
+fn fixed(axes: &[Axis]) -> [[bool; 3]; 2] {
+    let mut fixed = [[false; 3]; 2];
+    for (axis, turns) in axes.iter().map(|axis| axis.index()) {
+        fixed[usize::from(turns)][axis] = true;
+    }
+    fixed
 }
 
 /// Names of the supports that move, or hold, a node in a direction.
@@ -69,13 +72,7 @@ pub(super) fn lower(context: &Context, mesh: &Mesh, problems: &mut Problems) -> 
             continue;
         };
         let nodes = mesh.group_nodes(group);
-        let (mut fix, mut fix_rotations) = ([false; 3], [false; 3]);
-        for (axis, turns) in support.fix.iter().map(|axis| axis.index()) {
-            match turns {
-                true => fix_rotations[axis] = true,
-                false => fix[axis] = true,
-            }
-        }
+        let [fix, fix_rotations] = fixed(&support.fix);
         let own = Supported {
             name,
             path: &path,

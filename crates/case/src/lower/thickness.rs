@@ -140,7 +140,7 @@ fn thickness_file(
         .collect();
     nodes.sort_unstable();
     nodes.dedup();
-    let places = Places::new(&rows, APART * diagonal(mesh, &nodes));
+    let places = Places::new(&rows, APART * lookup::diagonal(mesh, &nodes));
     let mut nodal = vec![f64::NAN; mesh.nodes.len()];
     let mut without = Vec::new();
     for node in nodes {
@@ -157,23 +157,6 @@ fn thickness_file(
     let message = format!("nodes without a line in the file: {count}, the first at {at}");
     let problem = Problem::new(format!("{path}.file"), message);
     problems.refuse(problem.accepted(["a line at the place of each node of the body"]))
-}
-
-/// Diagonal of the box around some nodes, m.
-fn diagonal(mesh: &Mesh, nodes: &[u32]) -> f64 {
-    let side = |i: usize| {
-        let all = nodes.iter().map(|&node| mesh.nodes[node as usize][i]);
-        let [least, most] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, m], x| {
-            [l.min(x), m.max(x)]
-        });
-        most - least
-    };
-    [0, 1, 2]
-        .map(side)
-        .iter()
-        .map(|x| x * x)
-        .sum::<f64>()
-        .sqrt()
 }
 
 /// Lines of the file, sorted by x.

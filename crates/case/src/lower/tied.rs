@@ -2,7 +2,7 @@
 
 use carom_arlequin::{Row, Rows, Term};
 use carom_dynamics::{ModelBody, ModelConstraint};
-use carom_mesh::{Bounds, ElementId, Face, Mesh, Surface};
+use carom_mesh::{ElementId, Face, Mesh, Surface};
 use carom_zones::mortar_rows;
 
 use super::lookup;
@@ -49,7 +49,7 @@ pub(super) fn lower(
     }
     let (gap, most) = (
         gap(mesh, &rows),
-        APART * diagonal(mesh, &one).min(diagonal(mesh, &other)),
+        APART * mean_diagonal(mesh, &one).min(mean_diagonal(mesh, &other)),
     );
     if gap > most {
         let message = format!("these surfaces are {gap:.4e} m apart");
@@ -81,14 +81,7 @@ fn gap(mesh: &Mesh, rows: &Rows) -> f64 {
 }
 
 /// The mean diagonal of the faces of a surface, m.
-fn diagonal(mesh: &Mesh, surface: &Surface) -> f64 {
-    let of_face = |face: &Face| {
-        let corners = face.corners().iter().map(|&node| mesh.nodes[node as usize]);
-        let bounds = Bounds::of(&corners.collect::<Vec<_>>());
-        let square = (0..3)
-            .map(|i| (bounds.max[i] - bounds.min[i]).powi(2))
-            .sum::<f64>();
-        square.sqrt()
-    };
+fn mean_diagonal(mesh: &Mesh, surface: &Surface) -> f64 {
+    let of_face = |face: &Face| lookup::diagonal(mesh, face.corners());
     surface.faces.iter().map(of_face).sum::<f64>() / surface.faces.len() as f64
 }

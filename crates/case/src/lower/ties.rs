@@ -200,7 +200,7 @@ pub(super) fn borders(
     for (name, given) in context.case.interface.iter() {
         let path = format!("interface.{name}");
         let names = [&given.inner[..], &given.outer];
-        let Some(bodies) = Joint::bodies(context, &path, names, problems) else {
+        let Some(bodies) = lookup::bodies(context.case, &path, names, problems) else {
             continue;
         };
         let joint = Joint {

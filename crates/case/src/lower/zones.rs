@@ -7,7 +7,7 @@ use carom_mesh::ElementId;
 use carom_zones::LinkKind;
 
 use super::context::Context;
-use super::plan::{Plan, Zone};
+use super::plan::{self, Plan, Zone};
 use super::problems::Problems;
 use super::{lookup, time};
 use crate::error::Problem;
@@ -123,13 +123,8 @@ fn substeps(case: &Case, zones: &mut [Zone], problems: &mut Problems) {
 
 /// The link of all joints: the one given, or that which suits the steps.
 fn link_kind(case: &Case, inner_steps: bool, problems: &mut Problems) -> LinkKind {
-    let overlaps = case.arlequin.iter();
-    let overlaps = overlaps.map(|(name, joint)| (format!("arlequin.{name}"), joint.link));
-    let borders = case.interface.iter();
-    let borders = borders.map(|(name, joint)| (format!("interface.{name}"), joint.link));
-    let given: Vec<(String, Link)> = overlaps
-        .chain(borders)
-        .filter_map(|(path, link)| Some((format!("{path}.link"), link?)))
+    let given: Vec<(String, Link)> = plan::pairs(case)
+        .filter_map(|pair| Some((format!("{}.link", pair.path), pair.link?)))
         .collect();
     let text = |link: Link| match link {
         Link::GravouilCombescure => "gravouil-combescure",
@@ -154,25 +149,15 @@ fn link_kind(case: &Case, inner_steps: bool, problems: &mut Problems) -> LinkKin
 
 /// Refuses joints of unknown bodies, and of one zone.
 fn joints(case: &Case, plan: &Plan, problems: &mut Problems) {
-    let overlaps = case.arlequin.iter();
-    let overlaps = overlaps.map(|(n, j)| (format!("arlequin.{n}"), [&j.inner, &j.outer]));
-    let borders = case.interface.iter();
-    let borders = borders.map(|(n, j)| (format!("interface.{n}"), [&j.inner, &j.outer]));
     for (name, _) in case.interface.iter() {
         if case.arlequin.get(name).is_some() {
-            let problem = Problem::new(
-                format!("interface.{name}"),
-                "an overlap has this name too, and results name both by it",
-            );
+            let message = "an overlap has this name too, and results name both by it";
+            let problem = Problem::new(format!("interface.{name}"), message);
             problems.push(problem.accepted(["another name"]));
         }
     }
-    for (path, bodies) in overlaps.chain(borders) {
-        let sides = ["inner", "outer"].iter().zip(bodies);
-        let found: Vec<Option<usize>> = sides
-            .map(|(key, body)| lookup::body(case, &format!("{path}.{key}"), body, problems))
-            .collect();
-        let [Some(inner), Some(outer)] = found[..] else {
+    for plan::Pair { path, bodies, .. } in plan::pairs(case) {
+        let Some([inner, outer]) = lookup::bodies(case, &path, bodies, problems) else {
             continue;
         };
         if plan.zones.is_empty() {
