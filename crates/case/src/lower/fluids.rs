@@ -151,33 +151,39 @@ fn beside(
     let inner = problems.group(mesh, &format!("{path}.inner"), &fluid.inner)?;
     let outer = problems.group(mesh, &format!("{path}.outer"), &fluid.outer)?;
     if let (Some(length), Some(axis)) = (fluid.length, &fluid.axis) {
-        let nodes = [inner, outer].map(|group| mesh.group_nodes(group));
+        let [one, other] = [inner, outer].map(|group| mesh.group_nodes(group));
         let axis = lookup::normal(mesh, &format!("{path}.axis"), axis, problems)?;
-        return match [&nodes[0][..], &nodes[1][..]] {
-            [[one], [other]] => Some((vec![([*one, *other], length.0)], axis)),
-            _ => {
-                let problem =
-                    Problem::new(format!("{path}.length"), "a length is that of one node");
-                let found = format!(
-                    "{} and {}",
-                    plural(nodes[0].len(), "node"),
-                    plural(nodes[1].len(), "node")
-                );
-                let accepted = ["groups of one node", "groups of lines, without `length`"];
-                problems.refuse(problem.found(found).accepted(accepted))
-            }
-        };
+        if let ([one], [other]) = (&one[..], &other[..]) {
+            return Some((vec![([*one, *other], length.0)], axis));
+        }
+        let problem = Problem::new(format!("{path}.length"), "a length is that of one node");
+        let [one, other] = [one, other].map(|nodes| plural(nodes.len(), "node"));
+        let accepted = ["groups of one node", "groups of lines, without `length`"];
+        return problems.refuse(
+            problem
+                .found(format!("{one} and {other}"))
+                .accepted(accepted),
+        );
     }
     let lines = |group: &Group| group.dim == 1;
-    if !lines(inner) || !lines(outer) {
-        let key = if lines(inner) { "outer" } else { "inner" };
-        let problem = Problem::new(format!("{path}.{key}"), "a fluid gap is along lines");
-        let accepted = [
-            "a group of bars or beams",
-            "a group of one node with `length` and `axis`",
-        ];
-        return problems.refuse(problem.accepted(accepted));
+    if lines(inner) && lines(outer) {
+        return along_lines(mesh, path, [inner, outer], problems);
     }
+    let key = if lines(inner) { "outer" } else { "inner" };
+    let problem = Problem::new(format!("{path}.{key}"), "a fluid gap is along lines");
+    problems.refuse(problem.accepted([
+        "a group of bars or beams",
+        "a group of one node with `length` and `axis`",
+    ]))
+}
+
+/// As [`beside`], of groups of lines: each node of the inner one, with half of the lines that it has.
+fn along_lines(
+    mesh: &Mesh,
+    path: &str,
+    [inner, outer]: [&Group; 2],
+    problems: &mut Problems,
+) -> Option<(Vec<Pair>, [f64; 3])> {
     let (own, others) = (mesh.group_nodes(inner), mesh.group_nodes(outer));
     let [from, to] = [own.first()?, own.last()?].map(|&node| mesh.nodes[node as usize]);
     let way = [0, 1, 2].map(|i| to[i] - from[i]);
@@ -192,19 +198,14 @@ fn beside(
         let off = |other: &&u32| (place(**other) - place(node)).abs();
         let nearest = others.iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
         if off(&nearest) > BESIDE * size {
-            let problem = Problem::new(
-                format!("{path}.outer"),
-                "nodes of the two bodies must stand beside each other along the axis",
-            );
-            return problems.refuse(
-                problem
-                    .found(format!(
-                        "{}, none within {:.3e} m of node {node} of the inner body",
-                        plural(others.len(), "node"),
-                        BESIDE * size
-                    ))
-                    .accepted(["bodies with the same division along the axis"]),
-            );
+            let message = "nodes of the two bodies must stand beside each other along the axis";
+            let problem = Problem::new(format!("{path}.outer"), message);
+            let (count, most) = (plural(others.len(), "node"), BESIDE * size);
+            let problem = problem.found(format!(
+                "{count}, none within {most:.3e} m of node {node} of the inner body"
+            ));
+            return problems
+                .refuse(problem.accepted(["bodies with the same division along the axis"]));
         }
         let around = |id: &&ElementId| mesh.element_nodes(**id).contains(&node);
         let half = |id: &ElementId| {

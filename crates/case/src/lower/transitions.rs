@@ -44,21 +44,15 @@ pub(super) fn lower(
 ) -> Transitions {
     let turning = beams::nodes_with_rotations(context, mesh);
     let cells = bodies.iter().flat_map(|body| body.spec.cells.iter());
-    let sides: Vec<ElementId> = cells
-        .copied()
-        .filter(|&cell| mesh.kind(cell).table().dim == mesh.dim)
-        .collect();
-    let (mut all, mut links) = (Vec::new(), Vec::new());
+    let fills = |cell: &ElementId| mesh.kind(*cell).table().dim == mesh.dim;
+    let sides: Vec<ElementId> = cells.copied().filter(fills).collect();
+    let (mut constraints, mut links) = (Vec::new(), Vec::new());
     for (name, given) in context.case.transition.iter() {
         let path = format!("transition.{name}");
         if let Some(surfaces) = &given.surfaces {
-            all.extend(tied::lower(
-                (mesh, bodies),
-                (name, &path),
-                surfaces,
-                &sides,
-                problems,
-            ));
+            let of = (name, &path[..]);
+            let tied = tied::lower((mesh, bodies), of, surfaces, &sides, problems);
+            constraints.extend(tied);
         }
         let (Some(end), Some(face)) = (&given.end, &given.face) else {
             continue;
@@ -70,22 +64,18 @@ pub(super) fn lower(
             face,
             motion: given.motion.unwrap_or_default(),
         };
-        let face = lookup::surface(mesh, &sides, &format!("{path}.face"), given.face, problems);
+        let face = lookup::surface(mesh, &sides, &given.path_of("face"), given.face, problems);
         if both_turn(mesh, bodies, given, face.as_ref()) {
             links.extend(end_turns_on(context, (mesh, bodies), given, face, problems));
-            continue;
+        } else if !turns_by_any_angle(mesh, bodies, given, face.as_ref(), problems) {
+            constraints.extend(match is_edge(mesh, given.end) {
+                true => edge_on(mesh, bodies, given, face, problems),
+                false => end_on(mesh, &turning, given, face, problems),
+            });
         }
-        if turns_by_any_angle(mesh, bodies, given, face.as_ref(), problems) {
-            continue;
-        }
-        let found = match is_edge(mesh, given.end) {
-            true => edge_on(mesh, bodies, given, face, problems),
-            false => end_on(mesh, &turning, given, face, problems),
-        };
-        all.extend(found);
     }
     let inside = |link: &&ModelLink| link.zones[0] == link.zones[1];
-    let names = all.iter().map(|one| &one.name);
+    let names = constraints.iter().map(|one| &one.name);
     let mut names = names.chain(links.iter().filter(inside).map(|one| &one.name));
     if let (Some(first), false) = (names.next(), context.plan.zones.is_empty()) {
         let message = "in zones a transition joins a beam with finite rotations and a solid at finite strain of two zones";
@@ -95,10 +85,7 @@ pub(super) fn lower(
             "[arlequin.<name>] between the two bodies",
         ]));
     }
-    Transitions {
-        constraints: all,
-        links,
-    }
+    Transitions { constraints, links }
 }
 
 /// Whether the end of a beam and the face that has its motion in the mean both turn by any angle.
