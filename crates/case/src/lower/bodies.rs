@@ -26,13 +26,13 @@ pub(super) fn lower(
 ) -> Vec<ModelBody> {
     let mut bodies = Vec::new();
     for (number, (name, given)) in context.case.body.iter().enumerate() {
-        let one = &One {
+        let of = &GivenBody {
             number,
             name,
             path: format!("body.{name}"),
             given,
         };
-        let body = body(context, mesh, one, (materials, &bodies), problems);
+        let body = body(context, mesh, of, (materials, &bodies), problems);
         bodies.extend(body);
     }
     one_plane(&bodies, problems);
@@ -41,7 +41,7 @@ pub(super) fn lower(
 }
 
 /// A body of the case.
-struct One<'a> {
+struct GivenBody<'a> {
     number: usize,
     name: &'a str,
     path: String,
@@ -52,17 +52,17 @@ struct One<'a> {
 fn body(
     context: &Context,
     mesh: &Mesh,
-    one: &One,
+    of: &GivenBody,
     (materials, before): (&BTreeMap<String, Law>, &[ModelBody]),
     problems: &mut Problems,
 ) -> Option<ModelBody> {
-    let One { path, given, .. } = one;
+    let GivenBody { path, given, .. } = of;
     if !materials.contains_key(&given.material) {
         let problem = Problem::new(format!("{path}.material"), "no material of this name");
         problems.push(problem.unknown(&given.material, materials.keys().map(String::as_str)));
     }
     let group = problems.group(mesh, &format!("{path}.region"), &given.region)?;
-    let section = section(context, (mesh, group), one, materials, problems);
+    let section = section(context, (mesh, group), of, materials, problems);
     beams::suits_beams(path, given, problems);
     shells::suits_shells(path, given, problems);
     let Sectioned {
@@ -92,7 +92,7 @@ fn body(
     );
     let material = material?;
     let spec = BodySpec {
-        name: one.name.to_string(),
+        name: of.name.to_string(),
         cells,
         kinematics,
         material,
@@ -116,7 +116,7 @@ fn body(
     };
     Some(ModelBody {
         spec,
-        mass: match beams::mass_of(context, one.number, given) {
+        mass: match beams::mass_of(context, of.number, given) {
             Mass::Lumped => MassKind::Lumped,
             Mass::Consistent => MassKind::Consistent,
         },
@@ -143,11 +143,11 @@ fn start<Q: Copy + Into<f64>>(
 fn section(
     context: &Context,
     (mesh, group): (&Mesh, &Group),
-    one: &One,
+    of: &GivenBody,
     materials: &BTreeMap<String, Law>,
     problems: &mut Problems,
 ) -> Option<Sectioned> {
-    let One { path, given, .. } = one;
+    let GivenBody { path, given, .. } = of;
     let material = materials.get(&given.material).copied();
     let kinematics = match &given.section {
         Some(Section::Beam(section)) => beams::beam(mesh, path, section, material?, problems)?,

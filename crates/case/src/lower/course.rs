@@ -2,14 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use super::problems::Problems;
-use crate::error::Problem;
-
 use carom_dynamics::Amplitude;
 use carom_signals::Record;
 
+use super::problems::Problems;
+use crate::error::Problem;
+
 /// A signal, by what it is a function of time of.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) enum Course {
     Acceleration(Record),
     Displacement(Amplitude),

@@ -15,7 +15,7 @@ use super::laws::{self, Spring};
 use super::loads::{self, Loads};
 use super::pieces::{self, Joining};
 use super::problems::Problems;
-use super::supports::{self, Held};
+use super::supports::{self, Supports};
 use super::time::{self, Size};
 use super::{
     arlequin, bodies, constraints, contact_pairs, contacts, damped, discrete, explicit, fluids,
@@ -103,7 +103,7 @@ struct Parts {
     constraints: Vec<ModelConstraint>,
     /// Links of transitions.
     links: Vec<ModelLink>,
-    supports: Held,
+    supports: Supports,
     loads: Loads,
     probes: Vec<BuiltProbe>,
 }

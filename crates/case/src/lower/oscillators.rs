@@ -9,6 +9,7 @@ use carom_output::plot::quantity;
 
 use super::context::Context;
 use super::problems::Problems;
+
 /// Steps to a period below which a run does not follow a vibration: two are the bound of what samples can tell, and a scheme shortens or lengthens the
 /// periods of a few steps by tens of per cent.
 const FOLLOWED: f64 = 4.0;

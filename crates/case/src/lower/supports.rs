@@ -14,7 +14,7 @@ use crate::schema::{Axis, Case, Movement, MovementCourse};
 
 /// What supports hold and move.
 #[derive(Default)]
-pub(super) struct Held {
+pub(super) struct Supports {
     pub(super) supports: Vec<Support>,
     pub(super) motions: Vec<Prescribed>,
     /// Prescribed rotations.
@@ -55,8 +55,8 @@ fn fixed(axes: &[Axis]) -> [[bool; 3]; 2] {
 type Directions<'a> = BTreeMap<(u32, usize), &'a str>;
 
 /// Supports and prescribed motions; no node is held or moved twice in one direction where one of both is a motion.
-pub(super) fn lower(context: &Context, mesh: &Mesh, problems: &mut Problems) -> Held {
-    let mut all = Held::default();
+pub(super) fn lower(context: &Context, mesh: &Mesh, problems: &mut Problems) -> Supports {
+    let mut all = Supports::default();
     let (mut moved, mut held) = (Directions::new(), Directions::new());
     for (name, support) in context.case.support.iter() {
         let path = format!("support.{name}");
