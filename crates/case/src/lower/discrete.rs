@@ -170,7 +170,7 @@ fn mass(
 pub(super) fn linked(
     mesh: &mut Mesh,
     path: &str,
-    ends: &Ends,
+    names: &Ends,
     axis: Option<&NormalVector>,
     problems: &mut Problems,
 ) -> Option<(Vec<ElementId>, Option<[f64; 3]>)> {
@@ -184,7 +184,7 @@ pub(super) fn linked(
         None => None,
     };
     let back = || axis.map(|axis| axis.map(|n| -n));
-    match self::ends(mesh, path, ends, problems)? {
+    match ends(mesh, path, names, problems)? {
         [End::Ground, End::Nodes(nodes)] => Some((points(mesh, &nodes), back())),
         [End::Nodes(nodes), End::Ground] => Some((points(mesh, &nodes), axis)),
         [End::Nodes(one), End::Nodes(other)] => {

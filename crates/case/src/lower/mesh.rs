@@ -18,58 +18,41 @@ use crate::schema::{Count, Part, Placed};
 /// many without a factor.
 const NODE: f64 = 100.0;
 
+/// A part of the mesh.
+struct MeshPart {
+    /// Its key.
+    path: String,
+    name: String,
+    mesh: Mesh,
+}
+
 /// The mesh in metres.
 pub(super) fn lower(context: &Context, problems: &mut Problems) -> Option<Mesh> {
-    let mesh = &context.case.mesh;
-    let mut parts: Vec<(String, String, Mesh)> = Vec::new();
-    if let Some(file) = &mesh.file {
-        let scale = units::length_of_unit(&mesh.unit.0).unwrap_or(1.0);
-        parts.push((
-            "mesh.file".to_string(),
-            file.clone(),
-            read("mesh.file", context.folder, file, scale, problems)?,
-        ));
-    }
-    for (name, part) in mesh.part.iter() {
-        let path = format!("mesh.part.{name}");
-        let part = placed(&path, name, part, context.folder, problems)?;
-        parts.push((path, name.to_string(), part));
-    }
-    for (name, part) in mesh.generate.iter() {
-        let path = format!("mesh.generate.{name}");
-        let elements = match part {
-            Part::Line(line) => std::slice::from_ref(&line.elements),
-            Part::Rectangle(rectangle) => &rectangle.elements[..],
-            Part::Box(part) => &part.elements[..],
-        };
-        has_room(&path, nodes_of(elements), problems)?;
-        parts.push((path, name.to_string(), generated(name, part)));
-    }
-    if let Some(dimension) = mesh.dimension {
-        for (_, _, part) in &mut parts {
-            raise(part, dimension as usize, problems);
+    let mut parts = parts(context, problems)?;
+    if let Some(dimension) = context.case.mesh.dimension {
+        for part in &mut parts {
+            raise(&mut part.mesh, dimension as usize, problems);
         }
     }
     let mut parts = parts.into_iter();
-    let Some((_, first_name, mut whole)) = parts.next() else {
+    let Some(first) = parts.next() else {
         if let Some(mesh) = discrete::empty_mesh(context) {
             return Some(mesh);
         }
         let problem = Problem::new("mesh", "no mesh");
         return problems.refuse(problem.accepted(["`file`", "`part`", "`generate`"]));
     };
-    for (path, name, part) in parts {
-        if part.dim != whole.dim {
-            let message = format!(
-                "`{first_name}` has {}, this part another number",
-                dimensions(whole.dim)
-            );
-            let problem = Problem::new(path, message).found(dimensions(part.dim));
-            problems.push(problem.accepted([format!("{}, as before", dimensions(whole.dim))]));
-        } else if let Err(error) = whole.merge(&name, part) {
-            problems.push(
-                Problem::new(path, error.to_string()).accepted(["a name that no other group has"]),
-            );
+    let mut whole = first.mesh;
+    for MeshPart { path, name, mesh } in parts {
+        let all = dimensions(whole.dim);
+        if mesh.dim != whole.dim {
+            let first = &first.name;
+            let message = format!("`{first}` has {all}, this part another number");
+            let problem = Problem::new(path, message).found(dimensions(mesh.dim));
+            problems.push(problem.accepted([format!("{all}, as before")]));
+        } else if let Err(error) = whole.merge(&name, mesh) {
+            let problem = Problem::new(path, error.to_string());
+            problems.push(problem.accepted(["a name that no other group has"]));
         }
     }
     if problems.is_empty() {
@@ -79,6 +62,39 @@ pub(super) fn lower(context: &Context, problems: &mut Problems) -> Option<Mesh> 
     } else {
         None
     }
+}
+
+/// Those of files, then those that are generated.
+fn parts(context: &Context, problems: &mut Problems) -> Option<Vec<MeshPart>> {
+    let given = &context.case.mesh;
+    let mut parts = Vec::new();
+    if let Some(file) = &given.file {
+        let scale = units::length_of_unit(&given.unit.0).unwrap_or(1.0);
+        parts.push(MeshPart {
+            path: "mesh.file".to_string(),
+            name: file.clone(),
+            mesh: read("mesh.file", context.folder, file, scale, problems)?,
+        });
+    }
+    for (name, part) in given.part.iter() {
+        let path = format!("mesh.part.{name}");
+        let mesh = placed(&path, name, part, context.folder, problems)?;
+        let name = name.to_string();
+        parts.push(MeshPart { path, name, mesh });
+    }
+    for (name, part) in given.generate.iter() {
+        let path = format!("mesh.generate.{name}");
+        let elements = match part {
+            Part::Line(line) => std::slice::from_ref(&line.elements),
+            Part::Rectangle(rectangle) => &rectangle.elements[..],
+            Part::Box(part) => &part.elements[..],
+        };
+        has_room(&path, nodes_of(elements), problems)?;
+        let mesh = generated(name, part);
+        let name = name.to_string();
+        parts.push(MeshPart { path, name, mesh });
+    }
+    Some(parts)
 }
 
 /// Gives a part the dimension that the case asks for.

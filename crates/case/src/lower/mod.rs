@@ -1,4 +1,7 @@
 //! Stage two: names resolved, meshes read, ranges that need the mesh checked; a system, or every problem found.
+//!
+//! Each section of the case file has a file with a function `lower` from the `Context` and the results of earlier sections, which reports to
+//! `Problems`. `model.rs` and `system.rs` call them in their order.
 
 mod added;
 mod advice;

@@ -19,7 +19,7 @@ pub(super) fn obstacle(
     obstacle: &schema::Obstacle,
     problems: &mut Problems,
 ) -> Option<Obstacle> {
-    let (path, shape, motion) = match obstacle {
+    let (path, shape, moves) = match obstacle {
         schema::Obstacle::Plane(plane) => {
             let path = format!("{path}.obstacle.plane");
             let point = problems.vector(mesh, &format!("{path}.point"), &plane.point);
@@ -56,9 +56,9 @@ pub(super) fn obstacle(
             (path, Shape::Surface(Box::new(shape)), &surface.motion)
         }
     };
-    let motion = match motion {
+    let motion = match moves {
         None => Motion::default(),
-        Some(motion) => self::motion(mesh, &format!("{path}.motion"), motion, problems)?,
+        Some(given) => motion(mesh, &format!("{path}.motion"), given, problems)?,
     };
     Some(Obstacle { shape, motion })
 }

@@ -99,13 +99,9 @@ fn inertia(
     if let Some(centre) = &rigid.centre {
         inertia.centre = problems.vector(mesh, &format!("{path}.rigid.centre"), centre);
     }
-    if let Some(moments) = &rigid.inertia {
-        inertia.moments = self::moments(
-            mesh.dim,
-            &format!("{path}.rigid.inertia"),
-            moments,
-            problems,
-        )?;
+    if let Some(given) = &rigid.inertia {
+        let path = format!("{path}.rigid.inertia");
+        inertia.moments = moments(mesh.dim, &path, given, problems)?;
         inertia.axes = Rotation::IDENTITY;
     }
     Some(inertia)

@@ -33,8 +33,8 @@ struct Points {
 /// All signals of the case. `folder`: that its paths start from.
 pub(super) fn lower(case: &Case, folder: &Path, problems: &mut Problems) -> Signals {
     let mut signals = Signals::default();
-    for (name, signal) in case.signal.iter() {
-        let lowered = self::signal(&format!("signal.{name}"), signal, folder, problems);
+    for (name, given) in case.signal.iter() {
+        let lowered = signal(&format!("signal.{name}"), given, folder, problems);
         let course = lowered.map(|Lowered { course, words }| {
             signals
                 .words
@@ -92,9 +92,9 @@ fn accelerations(
             let path = format!("{path}.acceleration.points");
             Some(listed(points.collect(), &path))
         }
-        AccelerationSource::Csv(columns) => {
+        AccelerationSource::Csv(csv) => {
             let path = format!("{path}.acceleration.csv");
-            self::columns(folder, &path, (columns, "acceleration"), problems)
+            columns(folder, &path, (csv, "acceleration"), problems)
         }
         AccelerationSource::Synthetic(given) => {
             let path = format!("{path}.acceleration.synthetic");
@@ -116,9 +116,9 @@ fn displacements(
             let path = format!("{path}.displacement.points");
             Some(listed(points.collect(), &path))
         }
-        DisplacementSource::Csv(columns) => {
+        DisplacementSource::Csv(csv) => {
             let path = format!("{path}.displacement.csv");
-            self::columns(folder, &path, (columns, "length"), problems)
+            columns(folder, &path, (csv, "length"), problems)
         }
     }
 }
@@ -135,9 +135,9 @@ fn factors(
             let path = format!("{path}.factor.points");
             Some(listed(points.collect(), &path))
         }
-        FactorSource::Csv(columns) => {
+        FactorSource::Csv(csv) => {
             let path = format!("{path}.factor.csv");
-            self::columns(folder, &path, (columns, "number"), problems)
+            columns(folder, &path, (csv, "number"), problems)
         }
     }
 }

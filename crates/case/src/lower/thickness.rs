@@ -59,9 +59,7 @@ pub(super) fn thickness(
     let constant = given.thickness.map_or(0.0, |thickness| thickness.0);
     let nodal = match (&given.taper, &given.nodal_thickness) {
         (None, None) => return Some((constant, None)),
-        (Some(taper), _) => {
-            self::taper(mesh, &format!("{path}.taper"), (taper, constant), problems)?
-        }
+        (Some(given), _) => taper(mesh, &format!("{path}.taper"), (given, constant), problems)?,
         (None, Some(columns)) => thickness_file(
             context,
             (mesh, cells),
