@@ -5,11 +5,12 @@ use carom_mesh::{ElementId, Mesh, Surface};
 use carom_signals::{Error, RandomField};
 
 use super::context::Context;
+use super::course;
 use super::lookup::{self, AXES};
 use super::probes::integrals;
 use super::problems::Problems;
 use super::shells::shell_cells;
-use super::{course, signals};
+use super::signals::{self, Follower};
 use crate::error::Problem;
 use crate::schema::{self, AmplitudeCourse};
 
@@ -207,7 +208,8 @@ fn base_acceleration(
                 let problem = Problem::new(&path, message).found(signal);
                 problems.push(problem.accepted(["one base acceleration for each direction"]));
             }
-            base[axis] = signals::acceleration_signal(context, &path, signal, problems);
+            base[axis] =
+                signals::followed(context, &path, signal, Follower::Acceleration, problems);
         }
     }
     base
@@ -224,7 +226,7 @@ fn load_amplitude(
     match &load.amplitude {
         None => Some(Amplitude::constant(1.0)),
         Some(AmplitudeCourse::Signal(name)) => {
-            signals::factor_signal(context, &path, name, problems)
+            signals::followed(context, &path, name, Follower::Factor, problems)
         }
         Some(AmplitudeCourse::Points(points)) => {
             let points = points.iter();

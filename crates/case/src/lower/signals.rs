@@ -290,88 +290,61 @@ fn columns(
     })
 }
 
-/// The signal of this name, if it is one; a problem where there is none.
-fn find<'a>(
-    context: &Context<'a>,
+/// What follows a signal.
+#[derive(Clone, Copy)]
+pub(super) enum Follower {
+    /// The displacement of a support.
+    Displacement,
+    /// A base acceleration.
+    Acceleration,
+    /// The factor of a load.
+    Factor,
+}
+
+impl Follower {
+    /// Its function of time, if the signal is one of its quantities.
+    fn amplitude(self, course: &Course) -> Option<Amplitude> {
+        match (self, course) {
+            (Follower::Displacement, Course::Acceleration(record)) => Some(record.displacement()),
+            (Follower::Acceleration, Course::Acceleration(record)) => Some(record.acceleration()),
+            (Follower::Displacement, Course::Displacement(amplitude))
+            | (Follower::Factor, Course::Factor(amplitude)) => Some(amplitude.clone()),
+            _ => None,
+        }
+    }
+
+    /// Its quantities.
+    fn quantities(self) -> &'static str {
+        match self {
+            Follower::Displacement => "a displacement or an acceleration",
+            Follower::Acceleration => "an acceleration",
+            Follower::Factor => "a factor",
+        }
+    }
+}
+
+/// The function of time of what follows the signal `name`.
+pub(super) fn followed(
+    context: &Context,
     path: &str,
     name: &str,
+    follower: Follower,
     problems: &mut Problems,
-) -> Option<&'a Course> {
+) -> Option<Amplitude> {
     let courses = &context.signals.courses;
     let Some(course) = courses.get(name) else {
         let problem = Problem::new(path, "no signal of this name in the case");
         return problems.refuse(problem.unknown(name, courses.keys().map(String::as_str)));
     };
-    course.as_ref()
-}
-
-/// A signal of one of the quantities that `amplitude` knows; `accepted`: these in words.
-fn of_quantity(
-    context: &Context,
-    (path, name): (&str, &str),
-    accepted: &str,
-    amplitude: impl FnOnce(&Course) -> Option<Amplitude>,
-    problems: &mut Problems,
-) -> Option<Amplitude> {
-    let course = find(context, path, name, problems)?;
-    amplitude(course).or_else(|| {
-        let message = format!("the signal `{name}` is {}", course.quantity());
-        let problem = Problem::new(path, message).found(name);
-        problems.refuse(problem.accepted([format!("a signal that is {accepted}")]))
-    })
-}
-
-/// The displacement of a support that follows a signal.
-pub(super) fn displacement_signal(
-    context: &Context,
-    path: &str,
-    name: &str,
-    problems: &mut Problems,
-) -> Option<Amplitude> {
-    if let Some(Some(Course::Acceleration(record))) = context.signals.courses.get(name) {
+    let course = course.as_ref()?;
+    if let (Follower::Displacement, Course::Acceleration(record)) = (follower, course) {
         warn_of_drift(path, name, record, problems);
     }
-    let accepted = "a displacement or an acceleration";
-    let amplitude = |course: &Course| match course {
-        Course::Displacement(amplitude) => Some(amplitude.clone()),
-        Course::Acceleration(record) => Some(record.displacement()),
-        Course::Factor(_) => None,
-    };
-    of_quantity(context, (path, name), accepted, amplitude, problems)
-}
-
-/// A base acceleration.
-pub(super) fn acceleration_signal(
-    context: &Context,
-    path: &str,
-    name: &str,
-    problems: &mut Problems,
-) -> Option<Amplitude> {
-    let amplitude = |course: &Course| match course {
-        Course::Acceleration(record) => Some(record.acceleration()),
-        _ => None,
-    };
-    of_quantity(
-        context,
-        (path, name),
-        "an acceleration",
-        amplitude,
-        problems,
-    )
-}
-
-/// The factor of a load.
-pub(super) fn factor_signal(
-    context: &Context,
-    path: &str,
-    name: &str,
-    problems: &mut Problems,
-) -> Option<Amplitude> {
-    let amplitude = |course: &Course| match course {
-        Course::Factor(amplitude) => Some(amplitude.clone()),
-        _ => None,
-    };
-    of_quantity(context, (path, name), "a factor", amplitude, problems)
+    follower.amplitude(course).or_else(|| {
+        let message = format!("the signal `{name}` is {}", course.quantity());
+        let problem = Problem::new(path, message).found(name);
+        problems.refuse(problem.accepted([format!("a signal that is {}", follower.quantities())]))
+    })
 }
 
 /// Warns of a support that moves on after its record.

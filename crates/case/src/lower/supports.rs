@@ -8,7 +8,8 @@ use carom_mesh::Mesh;
 use super::context::Context;
 use super::lookup::{self, AXES};
 use super::problems::Problems;
-use super::{beams, course, signals};
+use super::signals::{self, Follower};
+use super::{beams, course};
 use crate::error::Problem;
 use crate::schema::{Axis, Case, Movement, MovementCourse};
 
@@ -270,7 +271,9 @@ fn movement(
     problems: &mut Problems,
 ) -> Option<Amplitude> {
     match course {
-        MovementCourse::Signal(name) => signals::displacement_signal(context, path, name, problems),
+        MovementCourse::Signal(name) => {
+            signals::followed(context, path, name, Follower::Displacement, problems)
+        }
         MovementCourse::Points(points) => {
             let points = points.iter();
             let points = points.map(|point| [point.time.0, point.displacement.0]);

@@ -59,6 +59,33 @@ pub(super) fn schemes(context: &Context, problems: &mut Problems) {
     }
 }
 
+/// Why a scheme cannot take a law.
+struct NotTaken {
+    key: &'static str,
+    message: &'static str,
+    found: &'static str,
+    accepted: &'static [&'static str],
+}
+
+const NEEDS_RATE: NotTaken = NotTaken {
+    key: "law",
+    message: "the contact impulses of this scheme act on the velocity at the end of the step: the scheme needs a law in the rate",
+    found: "a law in the gap",
+    accepted: &["velocity", "compliance", "restitution"],
+};
+const IMPOSSIBLE: NotTaken = NotTaken {
+    key: "law.displacement",
+    message: "in an explicit scheme the displacement at the end of the step does not depend on the contact force: this law is impossible",
+    found: "displacement",
+    accepted: &["velocity", "damped"],
+};
+const NEEDS_DISPLACEMENT: NotTaken = NotTaken {
+    key: "law",
+    message: "the contact forces of this scheme act on the displacement at the end of the step: the scheme needs the displacement law",
+    found: "another law",
+    accepted: &["displacement"],
+};
+
 /// Refuses laws that the scheme of their contact cannot take, one problem a reason.
 pub(super) fn laws(context: &Context, scheme_of: impl Fn(&str) -> Scheme, problems: &mut Problems) {
     for (name, contact) in context.case.contact.iter() {
@@ -72,22 +99,15 @@ pub(super) fn laws(context: &Context, scheme_of: impl Fn(&str) -> Scheme, proble
         if scheme.takes(level) {
             continue;
         }
-        if level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit() {
-            let message = "the contact impulses of this scheme act on the velocity at the end of the step: the scheme needs a law in the rate";
-            let problem = Problem::new(format!("contact.{name}.law"), message);
-            let problem = problem.found(format!("a law in the gap with {}", scheme.name()));
-            problems.push(problem.accepted(["velocity", "compliance", "restitution"]));
-        } else if level == Level::Gap {
-            let message = "in an explicit scheme the displacement at the end of the step does not depend on the contact force: this law is impossible";
-            let problem = Problem::new(format!("contact.{name}.law.displacement"), message);
-            let problem = problem.found(format!("displacement with {}", scheme.name()));
-            problems.push(problem.accepted(["velocity", "damped"]));
-        } else {
-            let message = "the contact forces of this scheme act on the displacement at the end of the step: the scheme needs the displacement law";
-            let problem = Problem::new(format!("contact.{name}.law"), message);
-            let problem = problem.found(format!("another law with {}", scheme.name()));
-            problems.push(problem.accepted(["displacement"]));
-        }
+        let in_rate = level != Level::Rate && scheme.takes(Level::Rate) && !scheme.is_explicit();
+        let row = match (in_rate, level) {
+            (true, _) => &NEEDS_RATE,
+            (false, Level::Gap) => &IMPOSSIBLE,
+            (false, _) => &NEEDS_DISPLACEMENT,
+        };
+        let problem = Problem::new(format!("contact.{name}.{}", row.key), row.message);
+        let problem = problem.found(format!("{} with {}", row.found, scheme.name()));
+        problems.push(problem.accepted(row.accepted.to_vec()));
     }
 }
 
