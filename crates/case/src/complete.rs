@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::build::{self, AddedForce, Built};
 use crate::error::Problem;
 use crate::expect::{Names, changes_the_model, rows};
 use crate::input::Input;
 use crate::locate::Locator;
+use crate::lower::{self, AddedForce, Built};
 use crate::origin::Origin;
 use crate::run::settings;
 use crate::schema::Case;
@@ -16,7 +16,7 @@ use crate::schema::Case;
 /// # Errors
 /// All problems that stage two can tell, with their places.
 pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    with_rows((case, locator, input), build::build(case, locator, input)?)
+    with_rows((case, locator, input), lower::build(case, locator, input)?)
 }
 
 /// As [`build`], to look at: nothing is written, a reduction that has a file and is made anew is not saved.
@@ -24,7 +24,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
 /// # Errors
 /// As [`build`].
 pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    let built = build::build_to_look(case, locator, input)?;
+    let built = lower::build_to_look(case, locator, input)?;
     with_rows((case, locator, input), built)
 }
 
@@ -33,10 +33,13 @@ pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Bu
 /// # Errors
 /// As [`build`]; those of the forces have no place.
 pub fn build_with(
-    given: (&Case, &Locator, &Input),
+    case: &Case,
+    locator: &Locator,
+    input: &Input,
     forces: &[AddedForce],
 ) -> Result<Built, Vec<Problem>> {
-    with_rows(given, build::build_with(given, forces)?)
+    let built = lower::build_with(case, locator, input, forces)?;
+    with_rows((case, locator, input), built)
 }
 
 fn with_rows(

@@ -13,9 +13,9 @@ use carom_dynamics::{Error, Observer, Stepper, Work, step_count};
 use std::sync::Arc;
 
 use crate::accelerations::accelerations;
-use crate::build::Built;
 use crate::facts::approach;
 use crate::input::Input;
+use crate::lower::Built;
 use crate::run::{Failed, run};
 use crate::schema::Case;
 

@@ -11,7 +11,7 @@ use carom_mesh::Parts;
 use carom_zones::{LinkKind, ModelZone, Zoned};
 
 use crate::accelerations::accelerations;
-use crate::build::{Built, plural};
+use crate::lower::{Built, plural};
 
 /// A line of `carom check`: what, and how much.
 #[derive(Clone, Debug, PartialEq, Eq)]

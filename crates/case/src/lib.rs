@@ -7,7 +7,6 @@
 pub mod schema;
 
 mod accelerations;
-mod build;
 mod compare;
 mod complete;
 mod convergence;
@@ -21,6 +20,7 @@ mod fit;
 mod input;
 mod keys;
 mod locate;
+mod lower;
 mod mesh_facts;
 mod modes;
 mod offenders;
@@ -40,7 +40,6 @@ mod tree;
 mod validate;
 mod words;
 
-pub use build::{AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, model};
 pub use compare::{Choices, compare};
 pub use complete::{build, build_to_look, build_with};
 pub use convert::{NotConverted, convert};
@@ -50,6 +49,7 @@ pub use facts::Fact;
 pub use fit::{Fit, fit};
 pub use input::{Input, Source};
 pub use locate::Locator;
+pub use lower::{AddedForce, Built, BuiltOverlap, BuiltProbe, ExactReference, model};
 pub use mesh_facts::mesh_facts;
 pub use modes::{Modal, ModesError, modes};
 pub use offenders::Offenders;

@@ -6,8 +6,8 @@ use carom_dynamics::System;
 use carom_mesh::{ElementId, Mesh};
 use carom_output::{BodyQuality, qualities};
 
-use crate::build::Built;
 use crate::facts::Fact;
+use crate::lower::Built;
 use crate::offenders::Offenders;
 
 /// Scaled Jacobian below which a cell is worth a look. The library Verdict accepts 0.2 to 0.5 and more, by the kind of the cell.

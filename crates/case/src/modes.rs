@@ -6,7 +6,7 @@ use carom_output::modes::ModeSet;
 use carom_output::{Folder, table::Table};
 use carom_reduction::Modes;
 
-use crate::build::Built;
+use crate::lower::Built;
 
 /// Why the modes of a case could not be had.
 #[derive(Debug, thiserror::Error)]

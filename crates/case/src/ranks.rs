@@ -11,10 +11,10 @@ use carom_output::checkpoint::Checkpoint;
 use carom_output::{Pieces, Results, Settings, watched};
 use carom_ranks::Ranks;
 
-use crate::build::{Built, build, model};
 use crate::error::Problem;
 use crate::input::Input;
 use crate::locate::Locator;
+use crate::lower::{Built, build, model};
 use crate::origin::Origin;
 use crate::run::{Failed, Finished, March, conclude, settings};
 use crate::schema::Case;

@@ -9,11 +9,11 @@ use carom_output::checkpoint::{self, Checkpoint};
 use carom_output::{Error, Folder, Results};
 use carom_ranks::Ranks;
 
-use crate::build::Built;
 use crate::complete::build;
 use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::locate::Locator;
+use crate::lower::Built;
 use crate::origin::Origin;
 use crate::parse::parse;
 use crate::ranks::{begin, go_through};

@@ -13,11 +13,11 @@ use carom_output::{
 use carom_zones::ModelZone;
 use thiserror::Error as ThisError;
 
-use crate::build::Built;
 use crate::convergence;
 use crate::describe::entries;
 use crate::expect::expected;
 use crate::input::Input;
+use crate::lower::Built;
 use crate::origin::Origin;
 use crate::schema::{Case, Field, Motion, Scheme};
 use crate::stepping::Stepping;

@@ -7,8 +7,8 @@ use std::time::Instant;
 use carom_dynamics::{Observer, Outcome, Stepper, is_at_end};
 use carom_output::Results;
 
-use crate::build::{AddedForce, Built};
 use crate::input::Input;
+use crate::lower::{AddedForce, Built};
 use crate::origin::Origin;
 use crate::run::{Failed, Finished, conclude, settings};
 use crate::schema::Case;

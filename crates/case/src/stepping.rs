@@ -8,7 +8,7 @@ use carom_output::summary::Zones;
 use carom_ranks::Ranks;
 use carom_zones::Whole;
 
-use crate::build::Built;
+use crate::lower::Built;
 
 /// What takes the steps of a built case.
 pub(crate) enum Stepping {

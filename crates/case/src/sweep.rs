@@ -13,10 +13,10 @@ use carom_output::compare::{Done, Outcome, Recorder, Variant};
 use carom_output::{Folder, Reference};
 use thiserror::Error as ThisError;
 
-use crate::build::{Built, build};
 use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::locate::Locator;
+use crate::lower::{Built, build};
 use crate::run::{reference, run};
 use crate::schema::Case;
 

@@ -4,8 +4,8 @@
 use carom_dynamics::System;
 use carom_output::plot::{digits, quantity};
 
-use crate::build::Built;
 use crate::facts::{Approach, Fact, courant_number, fact, facts_with};
+use crate::lower::Built;
 
 /// Sizes, speeds and times of a case.
 pub fn facts(built: &Built) -> Vec<Fact> {

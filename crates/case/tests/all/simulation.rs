@@ -55,7 +55,7 @@ impl Observer for Nothing {
 fn simulation(text: &str, forces: &[AddedForce], folder: Option<&std::path::Path>) -> Simulation {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap();
-    let built = build_with((&case, &locator, &input), forces).unwrap();
+    let built = build_with(&case, &locator, &input, forces).unwrap();
     Simulation::new((&input, &case, built), forces, folder.map(Into::into)).unwrap()
 }
 
@@ -136,7 +136,7 @@ fn forces_that_do_not_fit_are_refused() {
     let input = Input::from_text("case.toml", BARS, &[]);
     let (case, locator) = parse(&input).unwrap();
     let refused = |force: AddedForce| {
-        let problems = build_with((&case, &locator, &input), &[force]).unwrap_err();
+        let problems = build_with(&case, &locator, &input, &[force]).unwrap_err();
         problems[0].message.clone()
     };
     let size = Held::new();
