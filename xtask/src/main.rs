@@ -2,7 +2,7 @@
 //! chapter` makes the measured tables of the manual anew, `cargo xtask pages` the texts that pages include.
 //!
 //! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`,
-//! `circles`), the lock file of the Python package (`lock`), format,
+//! `circles`), names that were retired (`words`), the lock file of the Python package (`lock`), format,
 //! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command, and reports in a browser
 //! where one is installed (`page`).
 
@@ -21,6 +21,7 @@ mod lock;
 mod page;
 mod pages;
 mod place;
+mod words;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -34,11 +35,12 @@ const DOC: &str = "cargo doc --release --workspace --no-deps";
 /// A named check: what is wrong, one line each, or nothing.
 type Check = (&'static str, fn(&Path) -> Vec<String>);
 
-const CHECKS: [Check; 11] = [
+const CHECKS: [Check; 12] = [
     ("files", files::check),
     ("documentation", docs::check),
     ("layers", layers::check),
     ("circles", circles::check),
+    ("words", words::check),
     ("lock", lock::check),
     ("format", |root| command(root, "cargo fmt --all -- --check")),
     ("lints", |root| command(root, CLIPPY)),

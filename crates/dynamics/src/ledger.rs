@@ -12,7 +12,7 @@ use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::step_forces::OutsideForces;
 use crate::step_map::StepMap;
-use crate::step_terms::{Beyond, Energies, Jump, StepTerms};
+use crate::step_terms::{Energies, Jump, NonlinearTerms, StepTerms};
 use crate::sum::Sum;
 use crate::system::{Motion, System};
 use crate::tolerated::Tolerated;
@@ -170,8 +170,8 @@ pub struct Ledger {
     dissipation: Sum,
     /// What the scheme's own energy has lost by new sizes of the step, J.
     resized: Sum,
-    /// Works and dissipations of [`Beyond`], in its order.
-    beyond: [Sum; 6],
+    /// Works and dissipations of [`NonlinearTerms`], in its order.
+    nonlinear: [Sum; 6],
     /// Energy of deleted elements, J.
     deletion: Sum,
     hardening: f64,
@@ -239,8 +239,8 @@ impl Ledger {
         }
         next.is_static = step.is_static;
         add(&mut next.impulses.supports, &step.kick);
-        if let Some(beyond) = &step.beyond {
-            next.go_beyond(beyond);
+        if let Some(nonlinear) = &step.nonlinear {
+            next.add_nonlinear(nonlinear);
         }
         next.work_loads.add(step.work_loads);
         next.work_contact.add(step.work_contacts);
@@ -286,20 +286,20 @@ impl Ledger {
     }
 
     /// What only a step that is not linear has.
-    fn go_beyond(&mut self, beyond: &Beyond) {
+    fn add_nonlinear(&mut self, nonlinear: &NonlinearTerms) {
         let terms = [
-            beyond.work_supports,
-            beyond.dissipation_material,
-            beyond.dissipation_damping,
-            beyond.dissipation_friction,
-            beyond.work_obstacles,
-            beyond.dissipation_viscosity,
+            nonlinear.work_supports,
+            nonlinear.dissipation_material,
+            nonlinear.dissipation_damping,
+            nonlinear.dissipation_friction,
+            nonlinear.work_obstacles,
+            nonlinear.dissipation_viscosity,
         ];
-        for (sum, term) in self.beyond.iter_mut().zip(terms) {
+        for (sum, term) in self.nonlinear.iter_mut().zip(terms) {
             sum.add(term);
         }
-        (self.hardening, self.hourglass) = (beyond.hardening, beyond.hourglass);
-        self.tolerated.add(&beyond.tolerated);
+        (self.hardening, self.hourglass) = (nonlinear.hardening, nonlinear.hourglass);
+        self.tolerated.add(&nonlinear.tolerated);
     }
 
     /// The energy of the scheme has another term with the next size of the step: what it gains by that is no work. `term`: as it is at the start
@@ -320,7 +320,7 @@ impl Ledger {
     /// Adds a projection after the step just added.
     pub(crate) fn jump(&mut self, identity: &EnergyIdentity, energies: &Energies, jump: &Jump) {
         self.work_contact.add(jump.work);
-        self.beyond[4].add(jump.work_obstacles);
+        self.nonlinear[4].add(jump.work_obstacles);
         self.dissipation.add(jump.dissipation);
         add(&mut self.impulses.contacts, &jump.impulses.contacts);
         add(&mut self.impulses.supports, &jump.impulses.supports);
@@ -406,7 +406,7 @@ impl Ledger {
             dissipation_friction,
             work_obstacles,
             dissipation_viscosity,
-        ] = self.beyond.map(|sum| sum.get());
+        ] = self.nonlinear.map(|sum| sum.get());
         let works = work_loads + work_contact + work_links + work_supports + work_obstacles;
         let dissipations = dissipation_scheme
             + dissipation_material

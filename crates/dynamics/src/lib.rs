@@ -4,7 +4,6 @@
 //! [`Driver`] owns factors and scratch. [`march`] is the loop; observers see accepted states only. No files, no
 //! printing.
 
-mod alike;
 mod assembly_energy;
 mod at_rows;
 mod blocks;
@@ -13,6 +12,7 @@ mod choice;
 mod columns;
 mod compliance;
 pub mod condensed;
+mod contact_sums;
 mod control;
 mod costs;
 mod distributed;
@@ -29,10 +29,10 @@ mod load_forces;
 mod low_rank;
 mod march;
 mod moment;
-mod of_contact;
 mod on_ranks;
 pub mod operator;
 pub mod records;
+mod replicated;
 mod report;
 mod resultant;
 pub(crate) mod shapes;
@@ -46,13 +46,13 @@ mod tolerated;
 mod update;
 mod watch;
 
-pub use alike::Alike;
 pub use assembly_energy::{AssemblyEnergies, AssemblyEnergy};
 pub use carom_algebra::Interrupt;
 use carom_nonsmooth::{coulomb, interface};
 pub use carom_schemes as scheme;
 use carom_schemes::step_map;
 use carom_system as system;
+pub use replicated::Alike;
 
 pub use carom_signals::{Amplitude, Held};
 pub use control::{Attempts, Control, Event, adapt};

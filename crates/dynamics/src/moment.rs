@@ -35,7 +35,7 @@ pub fn moment<'a>(
     if loaded.is_empty() {
         return [0.0; 3];
     }
-    let sum = Resultant::on((system, &about.levers), at, nodal);
+    let sum = Resultant::on((system, &about.arms), at, nodal);
     for (rows, point) in loaded {
         for &unknown in rows.row(point).0 {
             nodal[unknown as usize] = 0.0;

@@ -4,7 +4,7 @@ use carom_algebra::rotation::Rotation;
 use carom_algebra::tensor::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::system::{Levers, System};
+use crate::system::{MomentArms, System};
 
 /// Force and moment about a point of the system ([`System::about`]) in the reference configuration; or momentum and angular momentum; or their
 /// impulses.
@@ -27,12 +27,12 @@ impl Resultant {
     /// frames; in the reference configuration without any, and in parts of small displacements ([`System::undeformed`]). Moments on
     /// finite rotations, about the axes of their frames, are turned by the mean of the rotations.
     pub(crate) fn at(system: &System, at: (&[Rotation], &[&[f64]]), f: &[f64]) -> Resultant {
-        Resultant::on((system, &system.levers), at, f)
+        Resultant::on((system, &system.arms), at, f)
     }
 
-    /// The same of the forces on some levers.
+    /// The same of the forces on some arms.
     pub(crate) fn on(
-        (system, levers): (&System, &Levers),
+        (system, arms): (&System, &MomentArms),
         (frames, displacements): (&[Rotation], &[&[f64]]),
         f: &[f64],
     ) -> Resultant {
@@ -43,17 +43,17 @@ impl Resultant {
             return sum;
         }
         let dim = system.dim;
-        for lever in &levers.nodes {
-            let first = lever.first as usize;
+        for arm in &arms.nodes {
+            let first = arm.first as usize;
             let vector = |values: &[f64]| {
                 let mut vector = [0.0; 3];
                 vector[..dim].copy_from_slice(&values[first..first + dim]);
                 vector
             };
-            let place = &system.x[lever.node as usize];
+            let place = &system.x[arm.node as usize];
             let mut x = [0, 1, 2].map(|i| place[i] - system.about[i]);
             let force = vector(f);
-            if !lever.undeformed {
+            if !arm.undeformed {
                 for u in displacements.iter().map(|u| vector(u)) {
                     for i in 0..3 {
                         x[i] += share * u[i];
@@ -65,7 +65,7 @@ impl Resultant {
                 sum.linear[i] += force[i];
                 sum.angular[i] += x[j] * force[k] - x[k] * force[j];
             }
-            if lever.bends {
+            if arm.bends {
                 match dim {
                     2 => sum.angular[2] += f[first + 2],
                     _ => (0..3).for_each(|i| sum.angular[i] += f[first + dim + i]),
@@ -73,7 +73,7 @@ impl Resultant {
             }
         }
         let about = Vec3::from(system.about);
-        for (unknown, amplitude) in &levers.amplitudes {
+        for (unknown, amplitude) in &arms.amplitudes {
             // rotations of amplitudes are about the origin of coordinates
             let moved = about.cross(&Vec3::from(amplitude.translation));
             for i in 0..3 {
@@ -81,7 +81,7 @@ impl Resultant {
                 sum.angular[i] += (amplitude.rotation[i] - moved[i]) * f[*unknown];
             }
         }
-        let turning = levers.turning.iter();
+        let turning = arms.turning.iter();
         let turning = turning.filter_map(|&(place, node)| Some((frames.get(place)?, node)));
         for (frame, node) in turning {
             let own = frame.matrix() * Vec3::from(unknowns.spin(node, f));

@@ -38,14 +38,14 @@ pub(crate) struct StepTerms<'a> {
     /// Impulse of supports at the start of the step, N s.
     pub(crate) kick: Resultant,
     /// What only a step that is not linear has.
-    pub(crate) beyond: Option<Beyond>,
+    pub(crate) nonlinear: Option<NonlinearTerms>,
     /// What rounding may have left of a linear step.
     pub(crate) rounding: Tolerated,
 }
 
 /// What a step that is not linear adds to the balance, J.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Beyond {
+pub(crate) struct NonlinearTerms {
     /// Work of supports that move.
     pub(crate) work_supports: f64,
     /// Work of obstacles that move.

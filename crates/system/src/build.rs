@@ -15,14 +15,14 @@ use crate::contacts::{numbered, owners};
 use crate::error::Error;
 use crate::extents::{NodeMasses, diagonals};
 use crate::initial::{settle, slack};
-use crate::levers::Levers;
 use crate::links::Links;
 use crate::made::Made;
 use crate::mass::Mass;
 use crate::massless::redistribute;
-use crate::middles::{Carried, add_middles};
+use crate::mid_surfaces::{Carried, add_middles};
 use crate::modal::NumberedModal;
 use crate::model::{Model, ModelBody, ModelContact, ModelDiscrete};
+use crate::moment_arms::MomentArms;
 use crate::numbered::NumberedNonlinear;
 use crate::numbering::{Numbering, numbering};
 use crate::reported::ReportedSupport;
@@ -228,7 +228,7 @@ impl System {
             .bodies
             .iter()
             .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
-        let levers = Levers::new(&unknowns, parts.iter().zip(&undeformed));
+        let arms = MomentArms::new(&unknowns, parts.iter().zip(&undeformed));
         let made = Made {
             model: &model,
             owners: &owners(&model),
@@ -237,13 +237,13 @@ impl System {
             number: &number,
             axisymmetric,
             unknowns: &unknowns,
-            levers: &levers,
+            arms: &arms,
         };
         let contacts = ContactPair::all(contacts, &made)?;
         let mut system = System {
             assemblies: Assemblies::default(),
             supports,
-            levers,
+            arms,
             undeformed,
             part_of_body,
             origin,

@@ -6,7 +6,6 @@
 mod adaptive;
 mod assemblies;
 mod assembling;
-mod bare;
 mod between;
 mod build;
 mod checks;
@@ -14,10 +13,10 @@ mod cliques;
 mod contact_pair;
 mod contacts;
 mod error;
+mod exposed_faces;
 mod extents;
 mod initial;
 mod integration;
-mod levers;
 mod link_row;
 mod links;
 mod loads;
@@ -25,9 +24,10 @@ mod made;
 mod maps;
 mod mass;
 mod massless;
-mod middles;
+mod mid_surfaces;
 mod modal;
 mod model;
+mod moment_arms;
 mod moments;
 mod motion;
 mod needs_factor;
@@ -53,7 +53,6 @@ pub use cliques::push_cliques;
 pub use contact_pair::ContactPair;
 pub use contacts::sides;
 pub use error::Error;
-pub use levers::{Lever, Levers};
 pub use link_row::{LinkRow, on};
 pub use links::Links;
 pub use loads::{Load, LoadKind, NodalLoad};
@@ -64,6 +63,7 @@ pub use model::{
     Model, ModelBody, ModelConstraint, ModelContact, ModelDiscrete, ModelLink, ModelRigid,
     ModelScheme, ModelTarget, NamedSupport, Support,
 };
+pub use moment_arms::{Lever, MomentArms};
 pub use moments::MomentAbout;
 pub use motion::Motion;
 pub use nonlinear::{Damping, Iteration, Nonlinear, Preload, Prescribed, PrescribedTurn};

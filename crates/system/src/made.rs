@@ -6,8 +6,8 @@ use carom_algebra::unknowns::Unknowns;
 use carom_bodies::Body;
 use carom_mesh::ElementId;
 
-use crate::levers::Levers;
 use crate::model::Model;
+use crate::moment_arms::MomentArms;
 
 /// What the contacts of a model are made from.
 pub(crate) struct Made<'a> {
@@ -21,5 +21,5 @@ pub(crate) struct Made<'a> {
     /// Whether bodies are axisymmetric.
     pub(crate) axisymmetric: bool,
     pub(crate) unknowns: &'a Unknowns,
-    pub(crate) levers: &'a Levers,
+    pub(crate) arms: &'a MomentArms,
 }

@@ -4,9 +4,9 @@ use carom_contact::{Contact, Target};
 use carom_mesh::Face;
 
 use crate::error::Error;
-use crate::levers::Levers;
 use crate::made::Made;
 use crate::model::ModelContact;
+use crate::moment_arms::MomentArms;
 
 /// The point that the moment of a contact is about, and what its forces on the secondary body act on.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +14,7 @@ pub struct MomentAbout {
     /// The point, fixed in space, m.
     pub point: [f64; 3],
     /// What moves nodes of the secondary surface.
-    pub levers: Levers,
+    pub arms: MomentArms,
 }
 
 impl MomentAbout {
@@ -58,7 +58,7 @@ impl MomentAbout {
         if opposite.any(shared) {
             return refuse("its two sides share nodes, whose forces belong to both");
         }
-        let levers = of.levers.among(unknowns, |unknown| secondary[unknown]);
-        Ok(Some(MomentAbout { point, levers }))
+        let arms = of.arms.among(unknowns, |unknown| secondary[unknown]);
+        Ok(Some(MomentAbout { point, arms }))
     }
 }

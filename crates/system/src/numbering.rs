@@ -5,7 +5,7 @@ use std::ops::Range;
 use carom_mesh::Parts;
 use carom_ranks::partition;
 
-use crate::middles::Carried;
+use crate::mid_surfaces::Carried;
 use crate::model::Model;
 
 /// Nodes of a box, about.

@@ -13,10 +13,10 @@ use carom_mesh::ElementId;
 use crate::build::Nodes;
 use crate::contact_pair::ContactPair;
 use crate::error::Error;
-use crate::levers::{Lever, Levers};
 use crate::links::Links;
 use crate::mass::Mass;
 use crate::model::{Model, ModelTarget};
+use crate::moment_arms::{Lever, MomentArms};
 use crate::moments::MomentAbout;
 use crate::numbered::NumberedNonlinear;
 use crate::numbered_loads::{NumberedForce, NumberedLoad};
@@ -109,8 +109,8 @@ impl<'a> Renumbering<'a> {
         before(unknowns.start)..before(unknowns.end)
     }
 
-    fn levers(&self, levers: &Levers) -> Levers {
-        let nodes = levers.nodes.iter().filter_map(|lever| {
+    fn arms(&self, arms: &MomentArms) -> MomentArms {
+        let nodes = arms.nodes.iter().filter_map(|lever| {
             let node = self.find(lever.node)?;
             Some(Lever {
                 node,
@@ -118,7 +118,7 @@ impl<'a> Renumbering<'a> {
                 ..*lever
             })
         });
-        Levers {
+        MomentArms {
             nodes: nodes.collect(),
             amplitudes: Vec::new(),
             turning: Vec::new(),
@@ -233,7 +233,7 @@ impl System {
             parts: self.parts.iter().map(|part| to.range(part)).collect(),
             part_of_body: self.part_of_body.clone(),
             undeformed: self.undeformed.clone(),
-            levers: to.levers(&self.levers),
+            arms: to.arms(&self.arms),
             supports: self.supports.iter().map(|of| of_support(of, &to)).collect(),
             nonlinear: of_nonlinear(&self.nonlinear, &bodies, &to),
             bodies,
@@ -289,7 +289,7 @@ fn of_contact(pair: &ContactPair, to: &Renumbering) -> ContactPair {
         secondary_faces: faces.map(|face| face.renumbered(number)).collect(),
         moment: moment.map(|moment| MomentAbout {
             point: moment.point,
-            levers: to.levers(&moment.levers),
+            arms: to.arms(&moment.arms),
         }),
         ..pair.clone()
     }

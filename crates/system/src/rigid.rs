@@ -10,7 +10,7 @@ use carom_contact::{Frames, Places, Sliding};
 
 use crate::contact_pair::ContactPair;
 use crate::error::Error;
-use crate::middles::Carried;
+use crate::mid_surfaces::Carried;
 use crate::model::{Model, ModelBody, ModelDiscrete};
 use crate::motion::Motion;
 use crate::refused::Refused;

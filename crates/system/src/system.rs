@@ -14,10 +14,10 @@ use carom_schemes::Scheme;
 use crate::adaptive::Adaptive;
 use crate::assemblies::Assemblies;
 use crate::contact_pair::ContactPair;
-use crate::levers::Levers;
 use crate::links::Links;
 use crate::mass::Mass;
 use crate::modal::NumberedModal;
+use crate::moment_arms::MomentArms;
 use crate::numbered::NumberedNonlinear;
 use crate::reported::ReportedSupport;
 
@@ -54,7 +54,7 @@ pub struct System {
     /// have small displacements, point masses and springs aside. Their internal forces have no moment about these.
     pub undeformed: Vec<bool>,
     /// What forces act on.
-    pub levers: Levers,
+    pub arms: MomentArms,
     /// Supports whose forces are reported.
     pub supports: Vec<ReportedSupport>,
     /// Bodies.

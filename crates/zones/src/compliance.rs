@@ -4,10 +4,10 @@ use carom_contact::Rows;
 use carom_dynamics::Driver;
 use carom_dynamics::linked::{Growth, Origin};
 
-use crate::between::Between;
+use crate::cross_zone::CrossZoneContacts;
 use crate::error::Error;
 
-impl Between {
+impl CrossZoneContacts {
     /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
     ///
     /// # Errors

@@ -41,7 +41,7 @@ pub enum Error {
     },
     /// A contact between zones without solution.
     #[error("step {step}, contact '{contact}' between zones: {cause}")]
-    Between {
+    CrossZone {
         /// Number of the outer step.
         step: u64,
         /// Name of the contact.

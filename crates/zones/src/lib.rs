@@ -8,9 +8,9 @@
 //! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
-mod between;
 mod compliance;
 mod control;
+mod cross_zone;
 mod discrete;
 mod ending;
 mod error;
@@ -31,7 +31,7 @@ mod turning;
 mod whole;
 mod zones;
 
-pub use between::BetweenState;
+pub use cross_zone::CrossZoneState;
 pub use error::Error;
 pub use model::{LinkKind, ModelZone, Zoned};
 pub use thin::{Glued, glue_thin};

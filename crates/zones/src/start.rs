@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_algebra::dense::DenseCholesky;
 
-use crate::between::Between;
+use crate::cross_zone::CrossZoneContacts;
 use crate::error::Error;
 use crate::model::Zoned;
 use crate::moves::Moves;
@@ -46,7 +46,7 @@ impl Zones {
             .iter()
             .map(|system| Driver::of_zone(Arc::clone(system)))
             .collect::<Result<Vec<_>, carom_dynamics::Error>>()?;
-        let between = Between::new(zoned, &drivers)?;
+        let between = CrossZoneContacts::new(zoned, &drivers)?;
         if between.is_some() {
             make_room(&mut drivers, &systems)?;
         }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::between::{Between, BetweenState};
+use crate::cross_zone::{CrossZoneContacts, CrossZoneState};
 use crate::model::LinkKind;
 use crate::moves::Moves;
 use crate::turning::{ByZone, TurningLinks};
@@ -59,7 +59,7 @@ pub struct ZonesState {
     /// Where each zone was linearised last.
     pub origins: Vec<Origin>,
     /// Contacts between zones, if there are any.
-    pub between: Option<BetweenState>,
+    pub between: Option<CrossZoneState>,
     /// By zone.
     pub zones: Vec<State>,
     /// Passes over all outer steps, for the results.
@@ -80,7 +80,7 @@ pub struct Zones {
     /// Links among them that turn.
     pub(crate) turning: Option<TurningLinks>,
     /// Contacts between zones.
-    pub(crate) between: Option<Between>,
+    pub(crate) between: Option<CrossZoneContacts>,
     /// Σ |c| of each row.
     pub(crate) norms: Vec<f64>,
     /// Range of the rows of each link.
@@ -275,7 +275,7 @@ impl Zones {
     }
 
     /// Contacts between zones, and what they go on from; none where all contacts are inside zones.
-    pub fn between(&self) -> Option<(&[usize], &BetweenState)> {
+    pub fn between(&self) -> Option<(&[usize], &CrossZoneState)> {
         let between = self.between.as_ref()?;
         Some((&between.contacts, &between.state))
     }

@@ -82,7 +82,7 @@ impl Active {
         (self.own, self.own_of) = (Some(own), own_of);
     }
 
-    /// Which points of a contact this process has.
+    /// Configuration points of a contact this process has.
     pub(super) fn own_of(&self, contact: usize) -> &Own {
         &self.own_of[contact]
     }

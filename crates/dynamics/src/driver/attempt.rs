@@ -24,7 +24,7 @@ impl Driver {
         self.attempt.hide_followed();
         self.contacts.size(&mut self.attempt, dt, next);
         self.begin_stage()?;
-        let outcome = self.attempt_after_jump(Driver::take_stages);
+        let outcome = self.attempt_after_jump(Driver::solve_step);
         self.stages.forget_predictor(&mut self.attempt);
         outcome?;
         self.parts.check_viscosity(&self.attempt, dt)?;
@@ -35,9 +35,9 @@ impl Driver {
         self.check_finite_on_ranks()
     }
 
-    pub(super) fn take_stages(&mut self) -> Result<(), Error> {
+    pub(super) fn solve_step(&mut self) -> Result<(), Error> {
         if self.is_direct() {
-            return self.step_directly();
+            return self.explicit_step();
         }
         self.leave_direct();
         self.attempt.vectors.make_room(&self.attempt.state.motion);

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use carom_contact::law::Level;
 
 use super::owners::{Attempt, Contacts, Parts};
-use super::{Driver, Which};
+use super::{Configuration, Driver};
 use crate::error::Error;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Row, StepMap};
@@ -236,7 +236,7 @@ impl Contacts {
             .copy_from_slice(&attempt.vectors.internal);
         let dt = attempt.dt;
         if !ended {
-            parts.stored = parts.internal(attempt, (Which::Next, false), |_| dt)?;
+            parts.stored = parts.internal(attempt, (Configuration::Next, false), |_| dt)?;
         }
         if affine && !known && attempt.system.is_nonlinear() {
             parts.balance_linear_forces(attempt);

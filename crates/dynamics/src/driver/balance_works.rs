@@ -12,7 +12,7 @@ use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
 use crate::step_forces::{OutsideForces, StepForces};
 use crate::step_map::Impulse;
-use crate::step_terms::{Beyond, Energies, StepTerms};
+use crate::step_terms::{Energies, NonlinearTerms, StepTerms};
 use crate::tolerated::Tolerated;
 
 /// Weights of the forces at the start and of the step in their means, by zone.
@@ -93,7 +93,7 @@ impl Driver {
             energy_of_scheme: (identity != EnergyIdentity::default()).then_some(own_before),
             forces: worked.forces,
             kick: jump.impulse,
-            beyond: Some(Beyond {
+            nonlinear: Some(NonlinearTerms {
                 work_supports: worked.reaction + jump.work,
                 work_obstacles: obstacles,
                 tolerated,

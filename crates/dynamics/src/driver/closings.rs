@@ -1,4 +1,4 @@
-//! Which contacts of rigid bodies close out of flight in the step under way, and when.
+//! Configuration contacts of rigid bodies close out of flight in the step under way, and when.
 
 use carom_contact::{Law, Pairing};
 

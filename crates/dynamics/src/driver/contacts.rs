@@ -20,13 +20,13 @@ impl Contacts {
     pub(super) fn paired_at(&self, number: usize) -> Paired {
         match self.closings.instant(number) {
             Some(instant) => Paired::Captured(instant),
-            None => self.manners[number].paired,
+            None => self.pairing_modes[number].paired,
         }
     }
 
     /// Derivative of the paired configuration by the unknown; zero where all of it is known before the step.
     pub(super) fn turning(&self, contact: usize) -> f64 {
-        self.manners[contact].turning
+        self.pairing_modes[contact].turning
     }
 
     /// Pairs all contacts at the x of the iteration. `first`: those in known configurations too.

@@ -57,14 +57,14 @@ impl Driver {
     }
 
     /// Takes the attempt.
-    pub(super) fn step_directly(&mut self) -> Result<(), Error> {
+    pub(super) fn explicit_step(&mut self) -> Result<(), Error> {
         let Some(mut direct) = self.explicit.direct.take() else {
             return Ok(());
         };
         let clean = std::mem::take(&mut direct.clean);
         direct.finite = false;
         let taken = match self.ranks.shared.take() {
-            None => self.leap(&mut direct, clean),
+            None => self.explicit_pass(&mut direct, clean),
             Some(mut shared) => {
                 let taken = self.step_on_ranks(&mut shared, &mut direct, clean);
                 self.ranks.shared = Some(shared);
@@ -75,12 +75,13 @@ impl Driver {
         taken
     }
 
-    fn leap(&mut self, direct: &mut Direct, clean: bool) -> Result<(), Error> {
+    fn explicit_pass(&mut self, direct: &mut Direct, clean: bool) -> Result<(), Error> {
         let (begin, before) = (Instant::now(), self.attempt.phases);
         if !self.contacts.weak.none() {
             self.parts.take_matrices(&mut self.attempt)?;
         }
-        self.parts.begin_leap(&mut self.attempt, direct, clean);
+        self.parts
+            .begin_explicit_pass(&mut self.attempt, direct, clean);
         self.attempt.place_end(direct);
         self.parts.forces_of_end(&mut self.attempt)?;
         let loads = self.attempt.loads_of_end(direct.loaded);
@@ -253,7 +254,12 @@ impl Contacts {
 
 impl Parts {
     /// Begins the step; `clean`: whether it is known which blocks have contact forces.
-    pub(super) fn begin_leap(&mut self, attempt: &mut Attempt, direct: &mut Direct, clean: bool) {
+    pub(super) fn begin_explicit_pass(
+        &mut self,
+        attempt: &mut Attempt,
+        direct: &mut Direct,
+        clean: bool,
+    ) {
         self.residuals.clear();
         self.residuals.push(0.0);
         (self.pace.age, self.pace.fresh) = (0, attempt.state.control.pace);

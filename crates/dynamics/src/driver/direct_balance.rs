@@ -8,7 +8,7 @@ use crate::assembly_energy::PartMotion;
 use crate::resultant::Resultant;
 use crate::step_forces::OutsideForces;
 use crate::step_map::Impulse;
-use crate::step_terms::{Beyond, Energies, Squares, StepTerms};
+use crate::step_terms::{Energies, NonlinearTerms, Squares, StepTerms};
 use crate::tolerated::Tolerated;
 use crate::update::Sums;
 
@@ -55,11 +55,9 @@ impl Driver {
         let forces = [&old.link_force[..], &new.link_force];
         let links = direct.links.work(weights[0], forces, [&old.u, &new.u]);
         let link_norm = direct.links.norm(&new.link_force);
-        let of_contacts = self.contacts.of_contacts.iter();
+        let of_contacts = self.contacts.sums.iter();
         let friction = -of_contacts.map(|of| of.report.friction_loss).sum::<f64>();
-        let obstacles = self.obstacle_work(&weights, &|contact| {
-            self.contacts.of_contacts[contact].pushed
-        });
+        let obstacles = self.obstacle_work(&weights, &|contact| self.contacts.sums[contact].pushed);
         let [inertia, internal, load, touch, beside] = sums.works;
         let stored = self.parts.stored;
         let energies = Energies {
@@ -81,13 +79,13 @@ impl Driver {
             false => [&map.impulse, &map.contact_impulse],
         };
         let mut dissipation = Squares::default().dissipation(&identity);
-        let mut beyond = None;
+        let mut nonlinear = None;
         if system.is_nonlinear() {
             dissipation = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
             self.parts.left_over = self.attempt.system.nonlinear.iteration.tolerance
                 * scale(sums, self.attempt.dt).max(link_norm);
             let nodes = system.nodes_of_whole as f64;
-            beyond = Some(Beyond {
+            nonlinear = Some(NonlinearTerms {
                 work_supports: 0.0,
                 work_obstacles: obstacles,
                 dissipation_material: stored.dissipated,
@@ -124,7 +122,7 @@ impl Driver {
                 links: beside.reversed(),
             },
             kick: Resultant::default(),
-            beyond,
+            nonlinear,
             rounding: Tolerated::default(),
         });
         let exchange = &mut self.attempt.next.exchange;

@@ -63,7 +63,7 @@ pub(super) struct Effective {
 /// The matrices of one size of the step.
 pub(super) struct Matrices {
     pub(super) key: Key,
-    /// Which parts the iterations make anew.
+    /// Configuration parts the iterations make anew.
     pub(super) iterated: Vec<bool>,
     pub(super) operators: Operators,
     /// Number of the first group of the operators that the iterations make anew; those of linear parts are before it.

@@ -7,7 +7,7 @@ use carom_bodies::{Placement, Scratch, Stored};
 
 use super::loads::factor;
 use super::owners::{Attempt, Parts};
-use super::{Vectors, Which};
+use super::{Configuration, Vectors};
 use crate::error::Error;
 use crate::step_map::StepMap;
 use crate::system::{Maps, NumberedForce, System};
@@ -149,7 +149,7 @@ impl Parts {
     pub(super) fn internal(
         &mut self,
         attempt: &mut Attempt,
-        (place, from): (Which, bool),
+        (place, from): (Configuration, bool),
         dt: impl Fn(&StepMap) -> f64,
     ) -> Result<Stored, Error> {
         let begin = Instant::now();
@@ -162,8 +162,8 @@ impl Parts {
             ..
         } = &mut attempt.vectors;
         let (u, v, frames) = match place {
-            Which::Place => (&configuration[..], &rate[..], &attempt.state.motion.frames),
-            Which::Next => {
+            Configuration::Place => (&configuration[..], &rate[..], &attempt.state.motion.frames),
+            Configuration::Next => {
                 let next = &attempt.next.motion;
                 (&next.u[..], &next.v[..], &next.frames)
             }

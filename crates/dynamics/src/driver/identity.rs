@@ -124,7 +124,7 @@ impl Driver {
                 links,
             },
             kick: Resultant::default(),
-            beyond: None,
+            nonlinear: None,
             rounding,
         });
     }

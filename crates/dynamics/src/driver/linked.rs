@@ -83,9 +83,7 @@ impl Driver {
         self.report.attempts = 1;
         if self.parts.prepared {
             self.attempt.notices = Notices::default();
-            let outcome = self
-                .take_stages()
-                .and_then(|()| self.attempt.check_finite());
+            let outcome = self.solve_step().and_then(|()| self.attempt.check_finite());
             self.attempt.unless_interrupted(outcome)?;
         } else {
             self.attempt(self.attempt.dt, self.ahead)?;

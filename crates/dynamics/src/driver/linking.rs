@@ -82,7 +82,7 @@ fn by_part((system, rows): (&System, &[LinkRow])) -> Vec<Vec<(u32, LinkRow)>> {
 pub(super) struct Made<'a> {
     /// Those of all iterated parts together; none without such parts.
     pub(super) matrix: Option<&'a Csr>,
-    /// Which parts these are.
+    /// Configuration parts these are.
     pub(super) iterated: &'a [bool],
     /// Whether contact forces that turn couple parts in it.
     pub(super) coupled: bool,

@@ -52,7 +52,6 @@ pub mod linked;
 mod linking;
 mod links;
 pub(crate) mod loads;
-mod manner;
 mod matrices;
 mod mean_forces;
 mod mixing;
@@ -60,6 +59,7 @@ mod near;
 mod obstacles;
 mod owners;
 pub mod paired;
+mod pairing_modes;
 mod part_matrix;
 mod passage;
 mod passed;
@@ -304,13 +304,13 @@ impl Contacts {
         }
         attempt.sized = sized;
         attempt.renew_maps(dt, next);
-        self.renew_manners(attempt);
+        self.renew_pairing_modes(attempt);
     }
 }
 
 /// A configuration of the step.
 #[derive(Clone, Copy)]
-enum Which {
+enum Configuration {
     /// The scratch configuration and velocity.
     Place,
     /// The end of the step.

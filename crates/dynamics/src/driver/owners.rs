@@ -19,18 +19,18 @@ use super::impulse::Impulses;
 use super::leapfrog::Direct;
 use super::linking::Multipliers;
 use super::mixing::Mixing;
-use super::paired::{Manner, sums_compliances};
+use super::paired::{PairingMode, sums_compliances};
 use super::passage::Passage;
 use super::rebound::Rebound;
 use super::refined::Refined;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Squares, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
+use crate::contact_sums::ContactSums;
 use crate::costs::Phases;
 use crate::coulomb::{Coulomb, FrictionProblem, Slip};
 use crate::error::Error;
 use crate::interface::{Candidate, Interface, InterfaceProblem};
-use crate::of_contact::OfContact;
 use crate::report::Notices;
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
@@ -41,7 +41,7 @@ use crate::system::{LinkRow, Maps, System};
 
 /// Contacts: search, pairing, points that may carry a force, their laws, the problems of forces and friction, what they did.
 pub(super) struct Contacts {
-    pub(super) manners: Vec<Manner>,
+    pub(super) pairing_modes: Vec<PairingMode>,
     /// Whether any contact is paired where the unknown leads.
     pub(super) turns: bool,
     /// Whether sliding is a velocity in steps of this size and stage.
@@ -79,7 +79,7 @@ pub(super) struct Contacts {
     pub(super) failed: Option<InterfaceProblem>,
     pub(super) failed_friction: Option<FrictionProblem>,
     /// What the points of each contact did in the attempt: those of this process, then of all.
-    pub(super) of_contacts: Vec<OfContact>,
+    pub(super) sums: Vec<ContactSums>,
     /// Room for nodal forces of a contact whose moment is reported, N.
     pub(super) nodal: Vec<f64>,
 }
@@ -91,7 +91,7 @@ impl Contacts {
     /// A weak form that is not positive definite.
     pub(super) fn of(system: &System) -> Result<Contacts, Error> {
         Ok(Contacts {
-            manners: Vec::new(),
+            pairing_modes: Vec::new(),
             turns: false,
             by_rate: false,
             interface: Interface::default(),
@@ -117,7 +117,7 @@ impl Contacts {
             slips: Vec::new(),
             failed: None,
             failed_friction: None,
-            of_contacts: Vec::new(),
+            sums: Vec::new(),
             nodal: Vec::new(),
             rows_stand: false,
         })

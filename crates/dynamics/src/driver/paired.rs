@@ -45,7 +45,7 @@ impl Paired {
 
 /// How a contact is paired.
 #[derive(Clone, Copy)]
-pub(super) struct Manner {
+pub(super) struct PairingMode {
     /// The configuration in which it is.
     pub(super) paired: Paired,
     /// Derivative of that configuration by the unknown; zero where all of it is known before the step.

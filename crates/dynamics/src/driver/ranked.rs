@@ -15,9 +15,9 @@ use super::Driver;
 use super::far::Far;
 use super::leapfrog::Direct;
 use super::owners::{Attempt, Contacts, Parts};
+use crate::contact_sums::ContactSums;
 use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
-use crate::of_contact::OfContact;
 use crate::shared::{Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive};
 use crate::state::State;
 use crate::system::{Model, System};
@@ -188,7 +188,8 @@ impl Driver {
             }
             self.contacts.active.look_to(&shared.in_reach);
         }
-        self.parts.begin_leap(&mut self.attempt, direct, clean);
+        self.parts
+            .begin_explicit_pass(&mut self.attempt, direct, clean);
         self.attempt.place_end(direct);
         let forced = self
             .parts
@@ -210,7 +211,7 @@ impl Driver {
             .report_supports(&self.attempt, loads, &|node| shared.halo.counts(node, rank));
         self.contacts.end_points(&mut self.attempt);
         self.report_own_contacts();
-        let mut contacts = std::mem::take(&mut self.contacts.of_contacts);
+        let mut contacts = std::mem::take(&mut self.contacts.sums);
         let energies = (&mut self.parts.stored, &mut self.balances.reactions[..]);
         let parts = &mut direct.parts[..];
         let told = Told {
@@ -222,7 +223,7 @@ impl Driver {
         };
         let told = shared.sum_up(parts, energies, &mut contacts, &told);
         if shared.in_reach.travel(&self.attempt.system, &contacts) {
-            self.contacts.of_contacts = contacts;
+            self.contacts.sums = contacts;
             return self.step_on_ranks(shared, direct, false);
         }
         if told.failed {
@@ -244,7 +245,7 @@ impl Driver {
             ];
             shared.gather_velocities(dim, velocities);
         }
-        self.contacts.of_contacts = contacts;
+        self.contacts.sums = contacts;
         self.end_directly(&sums, direct);
         self.attempt.phases.balance += begin.elapsed();
         Ok(())
@@ -254,12 +255,12 @@ impl Driver {
     fn report_own_contacts(&mut self) {
         self.report_contacts();
         let map = self.attempt.maps.first();
-        for k in 0..self.contacts.of_contacts.len() {
+        for k in 0..self.contacts.sums.len() {
             let in_steps = self.contacts.paired_at(k).row(map) == map.displacement;
             let Own::Some(own) = self.contacts.active.own_of(k) else {
                 continue;
             };
-            self.contacts.of_contacts[k].motion = match (in_steps, own.nodes.is_empty()) {
+            self.contacts.sums[k].motion = match (in_steps, own.nodes.is_empty()) {
                 (false, _) => f64::INFINITY,
                 (true, true) => 0.0,
                 (true, false) => self.contacts.search[k].motion(),
@@ -372,7 +373,7 @@ impl Contacts {
 
     /// Leaves out gaps beyond what counts in a step with the motion of all nodes, and tells what is recorded of contacts of which no point was
     /// looked at.
-    pub(super) fn know_gaps(&self, attempt: &mut Attempt, contacts: &mut [OfContact]) {
+    pub(super) fn know_gaps(&self, attempt: &mut Attempt, contacts: &mut [ContactSums]) {
         let interface = &mut attempt.next.interface;
         for (k, of) in contacts.iter_mut().enumerate() {
             let reach = attempt.system.contacts[k].reach(of.motion, self.active.reaches[k]);
@@ -417,7 +418,7 @@ impl Parts {
 
 impl Attempt {
     /// Whether an impact of a contact begins or ends in the step.
-    pub(super) fn impacts_change(&self, contacts: &[OfContact]) -> bool {
+    pub(super) fn impacts_change(&self, contacts: &[ContactSums]) -> bool {
         let mut records = self.state.records.contacts.iter().zip(contacts);
         records.any(|(record, of)| record.changes(of.report.closed > 0))
     }

@@ -7,9 +7,9 @@ use carom_contact::Rows;
 use super::Driver;
 use super::owners::{Attempt, Balances, Contacts};
 use crate::assembly_energy::{PartMotion, balance_taken};
+use crate::contact_sums::ContactSums;
 use crate::exchange::sum;
 use crate::moment::moment;
-use crate::of_contact::OfContact;
 use crate::records::Step;
 use crate::report::ContactReport;
 use crate::small::Largest;
@@ -37,7 +37,7 @@ impl Driver {
 
     /// What the points of the contacts did in the step: those that this process has.
     pub(super) fn report_contacts(&mut self) {
-        let mut all = std::mem::take(&mut self.contacts.of_contacts);
+        let mut all = std::mem::take(&mut self.contacts.sums);
         let mut nodal = std::mem::take(&mut self.contacts.nodal);
         all.clear();
         for k in 0..self.attempt.system.contacts.len() {
@@ -48,10 +48,10 @@ impl Driver {
             all.push(of);
         }
         self.contacts.passage.forget();
-        (self.contacts.of_contacts, self.contacts.nodal) = (all, nodal);
+        (self.contacts.sums, self.contacts.nodal) = (all, nodal);
     }
 
-    fn of_contact(&self, k: usize, nodal: &mut Vec<f64>) -> OfContact {
+    fn of_contact(&self, k: usize, nodal: &mut Vec<f64>) -> ContactSums {
         let (system, rows, projected) = (
             &*self.attempt.system,
             &self.contacts.pairing.rows,
@@ -89,7 +89,7 @@ impl Driver {
             }
         };
         let passed = self.contacts.passed(&self.attempt, k);
-        OfContact {
+        ContactSums {
             near: passed > 0 || points().next().is_some(),
             motion: f64::INFINITY,
             work: self.contacts.contact_work(&self.attempt, k)
@@ -120,7 +120,7 @@ impl Driver {
             self.attempt.dt
         };
         let span = [self.attempt.state.time, self.attempt.next.time];
-        for (k, of) in self.contacts.of_contacts.iter().enumerate() {
+        for (k, of) in self.contacts.sums.iter().enumerate() {
             let impulse = self.attempt.contact_impulse(k);
             let State {
                 motion,

@@ -8,7 +8,7 @@ use carom_mesh::ElementId;
 use super::loads::damping_rate;
 use super::owners::{Attempt, Contacts, Links, Parts};
 use super::scratch::Squares;
-use super::{Driver, Which};
+use super::{Configuration, Driver};
 use crate::error::{Error, MeshNode};
 use crate::system::Assembly;
 
@@ -51,14 +51,14 @@ impl Driver {
             self.attempt.maps.whole(|map| map.force, motion, xc, place);
             self.links.turn_rows(&self.attempt);
             let (between, dt) = (self.attempt.between(), self.attempt.dt);
-            self.parts.stored = self.parts.internal(
-                &mut self.attempt,
-                (Which::Place, between),
-                |map| match between {
-                    true => dt,
-                    false => map.instant(dt),
-                },
-            )?;
+            self.parts.stored =
+                self.parts
+                    .internal(&mut self.attempt, (Configuration::Place, between), |map| {
+                        match between {
+                            true => dt,
+                            false => map.instant(dt),
+                        }
+                    })?;
             self.attempt.evaluate_loads_of_step();
         }
         let vectors = &mut self.attempt.vectors;

@@ -6,7 +6,7 @@ use super::identity::{End, energies};
 use super::leapfrog::Direct;
 use super::owners::{Attempt, Balances, Contacts, Explicit, Parts, RankWork, Stages};
 use super::record::motion_of;
-use super::{Driver, Which, owners};
+use super::{Configuration, Driver, owners};
 use crate::assembly_energy::{AssemblyEnergies, PartMotion};
 use crate::control::Control;
 use crate::costs::Costs;
@@ -183,9 +183,9 @@ impl Driver {
             .vectors
             .rate
             .clone_from(&self.attempt.state.motion.v);
-        let stored = self
-            .parts
-            .internal(&mut self.attempt, (Which::Place, false), |_| 0.0)?;
+        let stored =
+            self.parts
+                .internal(&mut self.attempt, (Configuration::Place, false), |_| 0.0)?;
         self.attempt
             .state
             .motion

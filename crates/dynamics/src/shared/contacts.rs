@@ -6,8 +6,8 @@ use carom_ranks::{Message, Ranks};
 
 use super::halo::{Halo, With, by_rank};
 use crate::chatter::Waiting;
+use crate::contact_sums::ContactSums;
 use crate::march::{Scope, Watched};
-use crate::of_contact::OfContact;
 use crate::records::{ContactRecord, Records};
 use crate::state::{InterfaceState, State};
 use crate::system::System;
@@ -68,7 +68,7 @@ impl SharedPoints {
     /// motion of its nodes.
     pub(super) fn begin_sum(
         &mut self,
-        contacts: &[OfContact],
+        contacts: &[ContactSums],
         (sums, largest): (&mut Vec<f64>, &mut Vec<f64>),
     ) {
         self.gaps.clear();
@@ -81,7 +81,7 @@ impl SharedPoints {
 
     /// Takes what all ranks have given for it.
     pub(super) fn take_begun(
-        contacts: &mut [OfContact],
+        contacts: &mut [ContactSums],
         (sums, largest): (&mut impl FnMut() -> f64, &mut impl FnMut() -> f64),
     ) {
         for of in contacts {
@@ -96,7 +96,7 @@ impl SharedPoints {
     pub(super) fn sum(
         &mut self,
         ranks: &Ranks,
-        contacts: &mut [OfContact],
+        contacts: &mut [ContactSums],
         (before, end): (&[ContactRecord], f64),
     ) {
         let SharedPoints {
@@ -162,9 +162,13 @@ impl SharedPoints {
 }
 
 /// Finds where points are deeper behind the other side than any before the step, each rank knowing how deep: the first of such places.
-fn find_places(ranks: &Ranks, contacts: &mut [OfContact], (before, end): (&[ContactRecord], f64)) {
+fn find_places(
+    ranks: &Ranks,
+    contacts: &mut [ContactSums],
+    (before, end): (&[ContactRecord], f64),
+) {
     let pairs = contacts.iter_mut().zip(before);
-    let is_deeper = |(of, record): &(&mut OfContact, &ContactRecord)| {
+    let is_deeper = |(of, record): &(&mut ContactSums, &ContactRecord)| {
         of.near && of.passing.value > record.passing.value
     };
     let mut deeper: Vec<_> = pairs.filter(is_deeper).map(|(of, _)| of).collect();
@@ -243,8 +247,8 @@ fn sum_closings(ranks: &Ranks, records: &mut Records) {
 }
 
 /// Visits what of a contact is a sum over its points, or of one rank alone.
-fn numbers(of: &mut OfContact, visit: &mut impl FnMut(&mut f64)) {
-    let OfContact {
+fn numbers(of: &mut ContactSums, visit: &mut impl FnMut(&mut f64)) {
+    let ContactSums {
         near: _,
         motion: _,
         report,

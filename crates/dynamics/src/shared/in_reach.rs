@@ -8,7 +8,7 @@ use std::f64::consts::SQRT_2;
 use carom_contact::{Contact, Places, Search, Sliding, Target};
 use carom_ranks::Ranks;
 
-use crate::of_contact::OfContact;
+use crate::contact_sums::ContactSums;
 use crate::state::State;
 use crate::system::System;
 use carom_system::ContactPair;
@@ -108,7 +108,7 @@ impl InReach {
     }
 
     /// Takes the motions of a step; whether one was further than was assumed, so that a point may touch a face that was not in reach.
-    pub(crate) fn travel(&mut self, system: &System, steps: &[OfContact]) -> bool {
+    pub(crate) fn travel(&mut self, system: &System, steps: &[ContactSums]) -> bool {
         let mut is_left = false;
         let contacts = self.contacts.iter_mut().zip(&system.contacts).zip(steps);
         for ((of, contact), step) in contacts {

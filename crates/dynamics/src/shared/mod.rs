@@ -21,9 +21,9 @@ use carom_bodies::{Error as BodyError, Looks, Placement, Seen, Share, Stored};
 use carom_ranks::{Message, Ranks};
 
 use crate::blocks::{Block, blocks_of};
+use crate::contact_sums::ContactSums;
 use crate::error::Error;
 use crate::march::{Scope, Watched};
-use crate::of_contact::OfContact;
 use crate::records::ContactRecord;
 use crate::resultant::Resultant;
 use crate::state::State;
@@ -361,7 +361,7 @@ impl Shared {
         &mut self,
         parts: &mut [Sums],
         (stored, supports): (&mut Stored, &mut [Resultant]),
-        contacts: &mut [OfContact],
+        contacts: &mut [ContactSums],
         told: &Told,
     ) -> Told {
         let Shared {
@@ -415,7 +415,7 @@ impl Shared {
     /// `before`: the records at its start, `end`: its end, s.
     pub(crate) fn sum_contacts(
         &mut self,
-        contacts: &mut [OfContact],
+        contacts: &mut [ContactSums],
         (before, end): (&[ContactRecord], f64),
     ) {
         self.points.sum(&self.ranks, contacts, (before, end));

@@ -180,7 +180,7 @@ fn moments_touch_the_nodes_of_the_secondary_surface_alone() {
     for model in [on_slope, on_block] {
         let system = System::new(model(CENTRE)).unwrap();
         let about = system.contacts[0].moment.as_ref().unwrap();
-        let mut nodes: Vec<u32> = about.levers.nodes.iter().map(|lever| lever.node).collect();
+        let mut nodes: Vec<u32> = about.arms.nodes.iter().map(|lever| lever.node).collect();
         nodes.sort_unstable();
         let faces = system.contacts[0].secondary_faces.iter();
         let mut own: Vec<u32> = faces.flat_map(|face| face.corners()).copied().collect();

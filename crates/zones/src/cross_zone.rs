@@ -34,7 +34,7 @@ use carom_system::{LinkRow, System, on};
 
 /// What contacts between zones go on from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BetweenState {
+pub struct CrossZoneState {
     /// Forces, statuses and gaps of their points.
     pub interface: InterfaceState,
     /// Their records.
@@ -44,7 +44,7 @@ pub struct BetweenState {
 }
 
 /// Contacts between zones.
-pub(crate) struct Between {
+pub(crate) struct CrossZoneContacts {
     /// All bodies, and these contacts alone.
     pub(crate) system: Arc<System>,
     /// Their numbers in the model.
@@ -89,7 +89,7 @@ pub(crate) struct Between {
     /// Room for nodal forces, N.
     nodal: Vec<f64>,
     still: Vec<f64>,
-    pub(crate) state: BetweenState,
+    pub(crate) state: CrossZoneState,
     /// What the contacts did in the last outer step.
     pub(crate) reports: Vec<ContactReport>,
     /// Works of the step, J.
@@ -98,9 +98,9 @@ pub(crate) struct Between {
     change: f64,
 }
 
-impl Between {
+impl CrossZoneContacts {
     /// Whether a state is of these contacts.
-    pub(crate) fn has_state(&self, state: &BetweenState) -> bool {
+    pub(crate) fn has_state(&self, state: &CrossZoneState) -> bool {
         state.interface.is_of(self.system.points())
             && state.records.are_of(&self.system)
             && state.works.len() == self.state.works.len()
@@ -110,7 +110,10 @@ impl Between {
     ///
     /// # Errors
     /// A contact that zones of unequal steps cannot have.
-    pub(crate) fn new(zoned: &Zoned, drivers: &[Driver]) -> Result<Option<Between>, Error> {
+    pub(crate) fn new(
+        zoned: &Zoned,
+        drivers: &[Driver],
+    ) -> Result<Option<CrossZoneContacts>, Error> {
         let contacts = zoned.contacts_across();
         if contacts.is_empty() {
             return Ok(None);
@@ -135,7 +138,7 @@ impl Between {
         let count = contacts.len();
         let zeros = || vec![0.0; system.unknowns()];
         let scheme = |&contact: &usize| zoned.zones[zoned.zones_of(contact)[0]].scheme;
-        Ok(Some(Between {
+        Ok(Some(CrossZoneContacts {
             schemes: contacts.iter().map(scheme).collect(),
             contacts,
             homes,
@@ -165,7 +168,7 @@ impl Between {
             nodal: Vec::new(),
             still: zeros(),
             reports: vec![ContactReport::default(); count],
-            state: BetweenState {
+            state: CrossZoneState {
                 interface: empty_state(&system).interface,
                 records: Records::of(&system),
                 works: vec![0.0; count],
@@ -338,7 +341,7 @@ impl Between {
         let solved = self.interface.solve(&self.data, problem, [0.0, 1.0]);
         if let Err(failure) = solved {
             let contact = system.point(self.candidates[0] as usize).0.name.clone();
-            return Err(Error::Between {
+            return Err(Error::CrossZone {
                 step: step + 1,
                 contact,
                 cause: failure,

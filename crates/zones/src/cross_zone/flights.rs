@@ -5,9 +5,9 @@ use carom_dynamics::landing::{arrival, flies, lead};
 use carom_dynamics::paired::approaches;
 use carom_system::Adaptive;
 
-use super::Between;
+use super::CrossZoneContacts;
 
-impl Between {
+impl CrossZoneContacts {
     /// Whether a point carries a force or may do so within `dt` (s), at twice its present rate.
     pub(crate) fn may_touch(&self, dt: f64) -> bool {
         let interface = &self.state.interface;

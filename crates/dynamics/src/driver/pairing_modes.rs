@@ -4,25 +4,28 @@ use carom_contact::Sliding;
 use carom_contact::law::Level;
 
 use super::owners::{Attempt, Contacts};
-use super::paired::{Manner, Paired};
+use super::paired::{Paired, PairingMode};
 
 impl Contacts {
-    /// The manners of the contacts, after the size of the step or its stage has changed.
-    pub(super) fn renew_manners(&mut self, attempt: &Attempt) {
+    /// The pairing_modes of the contacts, after the size of the step or its stage has changed.
+    pub(super) fn renew_pairing_modes(&mut self, attempt: &Attempt) {
         let manner = |number: usize| {
             let paired = attempt.configuration(number);
             let contact = &attempt.system.contacts[number];
             let sides = std::iter::once(contact.secondary_body).chain(contact.primary_body);
             let maps = sides.map(|body| &attempt.maps.all()[attempt.system.zone_of_body[body]]);
-            Manner {
+            PairingMode {
                 paired,
                 turning: maps.fold(0.0, |most, map| f64::max(most, paired.row(map).x)),
             }
         };
-        let manners = (0..attempt.system.contacts.len()).map(manner).collect();
-        self.manners = manners;
+        let pairing_modes = (0..attempt.system.contacts.len()).map(manner).collect();
+        self.pairing_modes = pairing_modes;
         self.by_rate = attempt.slides_by_rate();
-        self.turns = self.manners.iter().any(|manner| manner.turning != 0.0);
+        self.turns = self
+            .pairing_modes
+            .iter()
+            .any(|manner| manner.turning != 0.0);
     }
 }
 

@@ -6,7 +6,7 @@ use crate::small::Largest;
 
 /// What the points of one contact did in a step.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct OfContact {
+pub(crate) struct ContactSums {
     /// Whether any was looked at.
     pub(crate) near: bool,
     /// Where several processes may have its points: the most that a node of this one has moved in the step, m; infinite otherwise.

@@ -20,7 +20,7 @@ pub struct Lever {
 
 /// All that forces act on, or what some of them act on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Levers {
+pub struct MomentArms {
     /// The nodes with translations, ascending.
     pub nodes: Vec<Lever>,
     /// The amplitudes, each with its unknown.
@@ -29,12 +29,12 @@ pub struct Levers {
     pub turning: Vec<(usize, u32)>,
 }
 
-impl Levers {
+impl MomentArms {
     /// `parts`: unknowns of each part, and whether it is undeformed.
     pub(crate) fn new<'a>(
         unknowns: &Unknowns,
         parts: impl Iterator<Item = (&'a Range<usize>, &'a bool)>,
-    ) -> Levers {
+    ) -> MomentArms {
         let of_part = |(part, undeformed): (&'a Range<usize>, &'a bool)| {
             let [first, last] = [part.start, part.end - 1].map(|unknown| unknowns.node(unknown));
             let nodes = (first..=last).filter(|node| !unknowns.translations_of(*node).is_empty());
@@ -48,7 +48,7 @@ impl Levers {
         let amplitudes = unknowns.amplitudes();
         let mut nodes: Vec<_> = parts.flat_map(of_part).collect();
         nodes.shrink_to_fit();
-        Levers {
+        MomentArms {
             nodes,
             amplitudes: amplitudes.map(|(unknown, of)| (unknown, *of)).collect(),
             turning: unknowns.turning().iter().copied().enumerate().collect(),
@@ -56,12 +56,12 @@ impl Levers {
     }
 
     /// Those that have unknowns among the given ones.
-    pub(crate) fn among(&self, unknowns: &Unknowns, has: impl Fn(usize) -> bool) -> Levers {
+    pub(crate) fn among(&self, unknowns: &Unknowns, has: impl Fn(usize) -> bool) -> MomentArms {
         let has_node = |node: u32| unknowns.of(node).any(&has);
         let nodes = self.nodes.iter().filter(|lever| has_node(lever.node));
         let amplitudes = self.amplitudes.iter().filter(|(unknown, _)| has(*unknown));
         let turning = self.turning.iter().filter(|(_, node)| has_node(*node));
-        Levers {
+        MomentArms {
             nodes: nodes.copied().collect(),
             amplitudes: amplitudes.copied().collect(),
             turning: turning.copied().collect(),

@@ -8,9 +8,9 @@ use carom_dynamics::state::{InterfaceState, empty_state};
 use carom_dynamics::{Driver, contact_report, moment};
 use carom_schemes::step_map::Impulse;
 
-use super::{Between, gather};
+use super::{CrossZoneContacts, gather};
 
-impl Between {
+impl CrossZoneContacts {
     /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).
     pub(crate) fn accept(&mut self, drivers: &[Driver], [time, dt]: [f64; 2]) {
         let before = self.state.interface.clone();
