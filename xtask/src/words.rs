@@ -42,7 +42,8 @@ pub fn check(root: &Path) -> Vec<String> {
 fn retired(page: &str) -> BTreeSet<String> {
     let rows = page.lines().skip_while(|line| !line.starts_with(HEAD));
     let rows = rows.skip(2).take_while(|line| line.starts_with('|'));
-    let last = rows.filter_map(|row| row.trim_end_matches([' ', '|']).rsplit('|').next());
+    // what is before the first bar is a column too
+    let last = rows.filter_map(|row| row.split('|').nth(3));
     let names = last.flat_map(|cell| cell.split('`').skip(1).step_by(2));
     names.map(str::to_owned).collect()
 }
