@@ -301,8 +301,7 @@ impl Simulation {
             direction,
             size: held.clone(),
         });
-        let built =
-            py.detach(|| build_with((&loaded.case, &loaded.locator, &loaded.input), &forces));
+        let built = py.detach(|| build_with(&loaded.case, &loaded.locator, &loaded.input, &forces));
         loaded.built = built.map_err(|problems| refused(py, &loaded.input.sources, &problems))?;
         self.forces = forces;
         self.controls
