@@ -48,7 +48,7 @@ pub enum NoRestitution {
 /// A flight lasts if it is longer than a wave takes across the longer of the two bodies: a contact that closes again earlier does
 /// so by the waves of that impact, or by the chatter of a scheme, and it is the same impact. It lasts too if it is ten times as
 /// long as the impact so far, for a body that stands for a mass on a spring, in which waves do not matter. A flight of less than
-/// four steps never lasts. A contact with a time of its own ([`System::merge_within`]) has that in place of all this.
+/// four steps never lasts. A contact with a time of its own ([`ContactPair::merge_within`](carom_system::ContactPair::merge_within)) has that in place of all this.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Impact {
     /// Index of the contact.

@@ -241,7 +241,7 @@ pub(crate) fn spin(
 
 impl System {
     /// Where nodes are at a time (s) and a displacement, from these rotations on; those of the start are
-    /// [`System::initial_frames`].
+    /// [`System::initial`].
     pub fn places<'a>(&'a self, time: f64, u: &'a [f64], frames: &'a [Rotation]) -> Places<'a> {
         Places {
             unknowns: &self.unknowns,

@@ -118,7 +118,7 @@ pub fn build_with(
 /// Its step is not known.
 ///
 /// # Errors
-/// As [`build`], but for what the system tells.
+/// As [`build`](crate::build), but for what the system tells.
 pub fn model(case: &Case, locator: &Locator, input: &Input) -> Result<Model, Vec<Problem>> {
     lowered(case, locator, (input, true), |context, problems| {
         let modelled = model::lower(context, &[], problems)?;
