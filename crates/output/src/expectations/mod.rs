@@ -2,7 +2,7 @@
 //!
 //! A row reads a number of `summary.json`, by its keys joined by dots, or one of a column of `histories.csv`.
 //! [`quantities`](crate::results::quantities) and [`columns`](crate::results::columns_with_units) list the names that a model has, with their
-//! units, before anything is computed. After a run that came to its end [`Expected::judge`] finds the numbers and compares.
+//! units, before anything is computed. After a run that came to its end `Expected::judge` finds the numbers and compares.
 
 mod column;
 mod row;
