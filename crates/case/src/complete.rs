@@ -16,7 +16,7 @@ use crate::schema::Case;
 /// # Errors
 /// All problems that stage two can tell, with their places.
 pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    with_rows((case, locator, input), lower::build(case, locator, input)?)
+    build_with(case, locator, input, &[])
 }
 
 /// As [`build`], to look at: nothing is written, a reduction that has a file and is made anew is not saved.
@@ -24,7 +24,7 @@ pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec
 /// # Errors
 /// As [`build`].
 pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    let built = lower::build_to_look(case, locator, input)?;
+    let built = lower::built(case, locator, (input, false), &[])?;
     with_rows((case, locator, input), built)
 }
 
@@ -38,7 +38,7 @@ pub fn build_with(
     input: &Input,
     forces: &[AddedForce],
 ) -> Result<Built, Vec<Problem>> {
-    let built = lower::build_with(case, locator, input, forces)?;
+    let built = lower::built(case, locator, (input, true), forces)?;
     with_rows((case, locator, input), built)
 }
 

@@ -14,7 +14,7 @@ use carom_ranks::Ranks;
 use crate::error::Problem;
 use crate::input::Input;
 use crate::locate::Locator;
-use crate::lower::{Built, build, model};
+use crate::lower::{self, Built, model};
 use crate::origin::Origin;
 use crate::run::{Failed, Finished, March, conclude, settings};
 use crate::schema::Case;
@@ -87,7 +87,7 @@ pub(crate) fn begin(
         (false, built) => {
             let built = match built {
                 Some(built) => Ok(built),
-                None => build(case, locator, input).map_err(refused),
+                None => lower::built(case, locator, (input, true), &[]).map_err(refused),
             };
             let built = together(ranks, built, Failed::Start)?;
             let settings = settings(&built);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use std::sync::Arc;
 
-use carom_dynamics::{Observer, Stepper, go_on};
+use carom_dynamics::{Observer, Silent, go_on};
 use carom_output::checkpoint::{self, Checkpoint};
 use carom_output::{Error, Folder, Results};
 use carom_ranks::Ranks;
@@ -34,19 +34,6 @@ pub struct Resume {
     origin: Origin,
     /// Why newer checkpoints are not used.
     pub unusable: Vec<Error>,
-}
-
-/// An observer of a run that takes no step.
-struct Silent;
-
-impl Observer for Silent {
-    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
-
-    fn finish(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
 }
 
 /// Why a run cannot go on.

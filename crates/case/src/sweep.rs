@@ -16,7 +16,7 @@ use thiserror::Error as ThisError;
 use crate::error::Problem;
 use crate::input::{Input, Source};
 use crate::locate::Locator;
-use crate::lower::{Built, build};
+use crate::lower::{self, Built};
 use crate::run::{reference, run};
 use crate::schema::Case;
 
@@ -103,7 +103,7 @@ impl Job {
     }
 
     pub(crate) fn build(&self) -> Result<Built, Vec<Problem>> {
-        build(&self.case, &self.locator, &self.input)
+        lower::built(&self.case, &self.locator, (&self.input, true), &[])
     }
 
     /// The problems as an error.

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use carom_case::{Input, Problem, build, parse};
-use carom_dynamics::{Observer, Stepper};
+use carom_dynamics::Silent;
 use carom_output::expectations::{Expectations, Judged, Kind, Range};
 use carom_verification::{Check, Error, Row, Size};
 
@@ -117,19 +117,6 @@ fn judged(name: &str, row: &Judged) -> Row {
         Kind::AnotherCode => new.other_code(),
         Kind::SecondFormulation => new.second_formulation(),
         Kind::Regression => new.regression(),
-    }
-}
-
-/// Nobody watches.
-struct Silent;
-
-impl Observer for Silent {
-    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
-
-    fn finish(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
     }
 }
 

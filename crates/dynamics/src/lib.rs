@@ -69,8 +69,8 @@ pub use interface::{Candidate, Failure, InterfaceProblem, InterfaceSolution};
 pub use ledger::{Balance, Ledger};
 pub use load_forces::load_forces;
 pub use march::{
-    FailedProblem, Going, Observer, Outcome, Scope, Stepper, Watched, go_on, is_at_end, march,
-    step_count,
+    FailedProblem, Going, Observer, Outcome, Scope, Silent, Stepper, Watched, go_on, is_at_end,
+    march, step_count,
 };
 pub use moment::moment;
 pub use on_ranks::OnRanks;

@@ -181,6 +181,19 @@ pub trait Observer {
     }
 }
 
+/// An observer that looks at nothing.
+pub struct Silent;
+
+impl Observer for Silent {
+    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), Error> {
+        Ok(())
+    }
+
+    fn finish(&mut self, _: &dyn Stepper) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {

@@ -92,12 +92,7 @@ fn spring(
         (None, None) => None,
     };
     let cells = linked(mesh, &path, &given.ends, given.axis.as_ref(), problems);
-    let (curve, (cells, axis)) = (curve?, cells?);
-    Some(model(
-        name,
-        cells,
-        DiscreteKind::Spring(Link { curve, axis }),
-    ))
+    Some(link(name, curve?, cells?, DiscreteKind::Spring))
 }
 
 fn dashpot(
@@ -117,12 +112,7 @@ fn dashpot(
         (None, None) => None,
     };
     let cells = linked(mesh, &path, &given.ends, given.axis.as_ref(), problems);
-    let (curve, (cells, axis)) = (curve?, cells?);
-    Some(model(
-        name,
-        cells,
-        DiscreteKind::Dashpot(Link { curve, axis }),
-    ))
+    Some(link(name, curve?, cells?, DiscreteKind::Dashpot))
 }
 
 fn mass(
@@ -298,6 +288,16 @@ pub(super) fn acts_at_a_point(path: &str, law: &Law, problems: &mut Problems) ->
         ]));
     }
     !per_area
+}
+
+/// What joins the ends in these cells, along an axis if there is one.
+fn link(
+    name: &str,
+    curve: Curve,
+    (cells, axis): (Vec<ElementId>, Option<[f64; 3]>),
+    kind: fn(Link) -> DiscreteKind,
+) -> ModelDiscrete {
+    model(name, cells, kind(Link { curve, axis }))
 }
 
 fn model(name: &str, cells: Vec<ElementId>, kind: DiscreteKind) -> ModelDiscrete {

@@ -81,35 +81,18 @@ use problems::Problems;
 pub(crate) use problems::plural;
 pub use reference::ExactReference;
 
-/// Builds the system of a case.
+/// Builds the system of a case, with forces that are in no case file; what it must give is left to [`complete`](crate::complete). `saves`: whether a
+/// reduction that is made anew is saved in its file.
 ///
 /// # Errors
-/// All problems that stage two can tell, with their places.
-pub fn build(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    build_with(case, locator, input, &[])
-}
-
-/// As [`build`], to look at: nothing is written, a reduction that has a file and is made anew is not saved.
-///
-/// # Errors
-/// As [`build`].
-pub fn build_to_look(case: &Case, locator: &Locator, input: &Input) -> Result<Built, Vec<Problem>> {
-    lowered(case, locator, (input, false), |context, problems| {
-        system::lower(context, &[], problems)
-    })
-}
-
-/// As [`build`], with forces that are in no case file.
-///
-/// # Errors
-/// As [`build`]; those of the forces have no place.
-pub fn build_with(
+/// All problems that stage two can tell, with their places; those of the forces have none.
+pub(crate) fn built(
     case: &Case,
     locator: &Locator,
-    input: &Input,
+    (input, saves): (&Input, bool),
     forces: &[AddedForce],
 ) -> Result<Built, Vec<Problem>> {
-    lowered(case, locator, (input, true), |context, problems| {
+    lowered(case, locator, (input, saves), |context, problems| {
         system::lower(context, forces, problems)
     })
 }

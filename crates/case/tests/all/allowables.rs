@@ -3,7 +3,7 @@
 use carom_case::{Input, Problem, build, parse};
 use carom_output::{Margin, Summary};
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 fn run(text: &str) -> Result<Summary, Vec<Problem>> {
     let work = tempfile::tempdir().unwrap();
@@ -11,7 +11,7 @@ fn run(text: &str) -> Result<Summary, Vec<Problem>> {
     let (case, locator) = parse(&input)?;
     let built = build(&case, &locator, &input)?;
     let (parts, folder) = ((&input, &case, &built), work.path().join("r"));
-    let finished = carom_case::run(parts, folder, &mut Nobody, &|| false).unwrap();
+    let finished = carom_case::run(parts, folder, &mut Silent, &|| false).unwrap();
     Ok(finished.summary)
 }
 

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use carom_case::{Axis, Choices, Fit, Input, Sweep, SweepError, compare, fit, study};
-use carom_dynamics::{Observer, Stepper};
+use carom_dynamics::Silent;
 use carom_output::Summary;
 use carom_output::compare::{COLUMNS, Comparison, Outcome, Standard};
 use carom_output::study::{Quantity, Source, Study};
@@ -30,23 +30,12 @@ time = {{ end = "150 us", step.courant = 0.5, scheme.theta.theta = 0.5 }}
 
 const EXACT: &str = "[reference.two-bars]";
 
-pub struct Nobody;
-
-impl Observer for Nobody {
-    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
-    fn finish(&mut self, _: &dyn carom_dynamics::Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
-}
-
 fn sweep<T>(folder: &Path, jobs: usize, work: impl FnOnce(&Sweep) -> T) -> T {
     work(&Sweep {
         folder,
         contact: None,
         jobs,
-        watch: &|_, _| Box::new(Nobody),
+        watch: &|_, _| Box::new(Silent),
         stop: &|| false,
     })
 }

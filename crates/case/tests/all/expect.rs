@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use carom_case::{Input, Problem, build, parse, run};
-use carom_dynamics::{Observer, Stepper};
+use carom_dynamics::Silent;
 use carom_output::expectations::Expectations;
 use carom_output::{Grade, Summary};
 use serde_json::Value;
@@ -43,18 +43,6 @@ load.weight = { acceleration = [0.0, -9.81] }
 contact.floor = { secondary = "block.bottom", obstacle.plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }, law.velocity = {}, friction.coulomb = 0.3, sliding = "finite", moment-about = [0.0, 0.0] }
 time = { end = "20 ms", step = "1 ms", scheme.theta = {} }
 "#;
-
-struct Silent;
-
-impl Observer for Silent {
-    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
-
-    fn finish(&mut self, _: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        Ok(())
-    }
-}
 
 /// The summary of a run, and what its file says.
 fn summary(text: &str, overrides: &[&str]) -> Result<(Summary, Value), Vec<Problem>> {

@@ -6,7 +6,7 @@ use carom_algebra::fingerprint::Fingerprint;
 use carom_case::{Input, Resume, build, parse};
 use carom_testing::damage::forged;
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 /// Forged checkpoints of each case.
 const COUNT: usize = 150;
@@ -52,7 +52,7 @@ fn taken(text: &str) -> usize {
     carom_case::run(
         (&input, &case, &built),
         folder.clone(),
-        &mut Nobody,
+        &mut Silent,
         &|| false,
     )
     .unwrap();

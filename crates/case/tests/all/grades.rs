@@ -3,7 +3,7 @@
 use carom_case::{Input, build, parse, run};
 use carom_output::verdict::{Grade, Verdict};
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 fn verdict(text: &str) -> Verdict {
     let input = Input::from_text("case.toml", text, &[]);
@@ -11,7 +11,7 @@ fn verdict(text: &str) -> Verdict {
     let built = build(&case, &locator, &input).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("results");
-    let finished = run((&input, &case, &built), folder, &mut Nobody, &|| false).unwrap();
+    let finished = run((&input, &case, &built), folder, &mut Silent, &|| false).unwrap();
     finished.summary.verdict
 }
 

@@ -5,8 +5,8 @@ use std::fs;
 use carom_case::{Input, build, parse};
 use carom_dynamics::{Error, Interrupt, Observer, Stepper};
 
-use crate::compare::Nobody;
 use crate::resume::{cases, content, open, run, words};
+use carom_dynamics::Silent;
 
 /// Asks for the end once so many steps are taken: the next one has begun when it is looked at.
 struct Ends {
@@ -56,7 +56,7 @@ fn ended_within_a_step(name: &str, overrides: &[&str], after: u64) {
     );
     let resume = open(&cut, &[]);
     assert_eq!(resume.instant().0, after, "{name}");
-    resume.run(&mut Nobody, &|| false).unwrap();
+    resume.run(&mut Silent, &|| false).unwrap();
     let [whole, cut] = [&whole, &cut].map(|folder| content(folder));
     for (file, bytes) in &whole {
         assert!(cut[file] == *bytes, "{name}: {file} differs");

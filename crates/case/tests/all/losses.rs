@@ -3,7 +3,7 @@
 use carom_case::{Axis, Input, build, parse, run};
 use carom_output::{Grade, Verdict};
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 fn verdict(text: &str, overrides: &[&str]) -> Verdict {
     let overrides: Vec<String> = overrides.iter().map(|text| (*text).to_owned()).collect();
@@ -12,7 +12,7 @@ fn verdict(text: &str, overrides: &[&str]) -> Verdict {
     let built = build(&case, &locator, &input).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("results");
-    let finished = run((&input, &case, &built), folder, &mut Nobody, &|| false);
+    let finished = run((&input, &case, &built), folder, &mut Silent, &|| false);
     finished.unwrap().summary.verdict
 }
 

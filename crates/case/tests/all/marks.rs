@@ -3,7 +3,7 @@
 use carom_case::{Input, build, parse, run};
 use serde_json::Value;
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 /// A strip of four cells above a bar, held on the left and pulled down on the right, beside two masses that a spring joins.
 const MODEL: &str = r#"
@@ -31,7 +31,7 @@ fn the_model_of_the_report_has_names_of_what_acts_on_it() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("results");
     let all = (&input, &case, &built);
-    run(all, folder.clone(), &mut Nobody, &|| false).unwrap();
+    run(all, folder.clone(), &mut Silent, &|| false).unwrap();
     let html = std::fs::read_to_string(folder.join("report.html")).unwrap();
     let (_, rest) = html.split_once("<script id=\"carom-page\"").unwrap();
     let head = rest.split_once('>').unwrap().1;

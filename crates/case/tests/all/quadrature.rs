@@ -5,7 +5,7 @@ use carom_contact::Integration;
 use carom_dynamics::System;
 use carom_output::Grade;
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 /// A block of 5 elements of 0.2 m that comes down on a slope.
 fn text(contact: &str) -> Input {
@@ -73,7 +73,7 @@ fn the_summary_counts_the_nodes_with_mixed_supports() {
         let built = build(&case, &locator, &input).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let folder = folder.path().join("results");
-        let finished = run((&input, &case, &built), folder, &mut Nobody, &|| false).unwrap();
+        let finished = run((&input, &case, &built), folder, &mut Silent, &|| false).unwrap();
         let contact = &finished.summary.contacts["slope"];
         let verdict = &finished.summary.verdict;
         // the scheme takes 40 % of the energy, which the verdict tells

@@ -12,7 +12,7 @@ use carom_dynamics::{ContactRecord, Driver, State, Watched};
 use carom_output::checkpoint;
 use carom_ranks::{Ranks, threads};
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 /// Two bars, one faster than the other.
 const BARS: &str = r#"
@@ -167,7 +167,7 @@ pub fn run_on(
         let built = first.then(|| build(&case, &locator, &input).unwrap());
         let read = (&input, &case, &locator);
         let folder = folder.to_owned();
-        run_on_ranks(ranks, read, built, folder, &mut Nobody, &after(steps))
+        run_on_ranks(ranks, read, built, folder, &mut Silent, &after(steps))
     })
 }
 
@@ -181,7 +181,7 @@ pub fn resume_on(count: usize, folder: &Path) {
         let Ok(resume) = opened else {
             panic!("the folder is refused")
         };
-        resume.run_on_ranks(ranks, &mut Nobody, &|| false).unwrap();
+        resume.run_on_ranks(ranks, &mut Silent, &|| false).unwrap();
     });
 }
 
@@ -189,7 +189,7 @@ pub fn resume_on(count: usize, folder: &Path) {
 pub fn run_alone(text: &str, folder: &Path) {
     let (input, case, model) = built(text);
     let parts = (&input, &case, &model);
-    run(parts, folder.to_owned(), &mut Nobody, &|| false).unwrap();
+    run(parts, folder.to_owned(), &mut Silent, &|| false).unwrap();
 }
 
 /// The state of the last checkpoint.
@@ -431,7 +431,7 @@ fn three_ranks_and_one_go_on_from_the_checkpoint_of_four() {
             let Ok(resume) = Resume::open(&cut, &[]) else {
                 panic!("the folder is refused")
             };
-            resume.run(&mut Nobody, &|| false).unwrap();
+            resume.run(&mut Silent, &|| false).unwrap();
         } else {
             resume_on(count, &cut);
         }

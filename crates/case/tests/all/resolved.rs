@@ -3,8 +3,8 @@
 use carom_case::{Input, build, parse, run};
 use carom_output::{Grade, Summary};
 
-use crate::compare::Nobody;
 use crate::verdict::result;
+use carom_dynamics::Silent;
 
 /// A cantilever of 1 m, 20 mm high, under a load at its end.
 fn cantilever(elements: [u32; 2], more: &str) -> Summary {
@@ -145,7 +145,7 @@ fn a_corner_touches_in_a_point_whatever_the_elements() {
     let built = build(&case, &locator, &input).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path().join("results");
-    let finished = run((&input, &case, &built), folder, &mut Nobody, &|| false).unwrap();
+    let finished = run((&input, &case, &built), folder, &mut Silent, &|| false).unwrap();
     let summary = finished.summary;
     assert!(summary.contacts["wall"].peak_force > 0.0);
     assert!(

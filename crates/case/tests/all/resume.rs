@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use carom_case::{Input, NotResumed, Resume, build, parse};
 use carom_output::checkpoint;
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 pub fn cases() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases")
@@ -38,7 +38,7 @@ pub fn run(input: &Input, folder: &Path, steps: u64) -> bool {
     let (case, locator) = parse(input).unwrap_or_else(|problems| panic!("{problems:?}"));
     let built = build(&case, &locator, input).unwrap_or_else(|problems| panic!("{problems:?}"));
     let parts = (input, &case, &built);
-    let finished = carom_case::run(parts, folder.to_owned(), &mut Nobody, &after(steps)).unwrap();
+    let finished = carom_case::run(parts, folder.to_owned(), &mut Silent, &after(steps)).unwrap();
     !finished.interrupted
 }
 
@@ -111,13 +111,13 @@ pub fn compare(name: &str, input: &Input, cuts: [u64; 2]) {
     assert_eq!(resume.instant().0, cuts[0]);
     assert!(
         resume
-            .run(&mut Nobody, &after(cuts[1]))
+            .run(&mut Silent, &after(cuts[1]))
             .unwrap()
             .interrupted
     );
     assert!(
         !open(&cut, &[])
-            .run(&mut Nobody, &|| false)
+            .run(&mut Silent, &|| false)
             .unwrap()
             .interrupted
     );
@@ -178,7 +178,7 @@ fn another_end_is_that_of_a_run_with_it() {
     assert!(run(&read(&[short]), &cut, u64::MAX));
     assert!(
         !open(&cut, &[long])
-            .run(&mut Nobody, &|| false)
+            .run(&mut Silent, &|| false)
             .unwrap()
             .interrupted
     );
@@ -291,7 +291,7 @@ fn damaged_checkpoints_and_other_folders_are_refused() {
     // a table that is shorter than at the checkpoint
     fs::write(&newest, &whole).unwrap();
     fs::write(folder.join("histories.csv"), b"time_s\n").unwrap();
-    let error = open(&folder, &[]).run(&mut Nobody, &|| false).unwrap_err();
+    let error = open(&folder, &[]).run(&mut Silent, &|| false).unwrap_err();
     assert!(error.to_string().contains("histories.csv"), "{error}");
 }
 
@@ -355,7 +355,7 @@ fn compressed_histories_go_on_without_gap_or_duplicate() {
     let more = bytes[..bytes.len() / 2].to_vec();
     bytes.extend(more);
     fs::write(&path, bytes).unwrap();
-    open(&packed, &[]).run(&mut Nobody, &|| false).unwrap();
+    open(&packed, &[]).run(&mut Silent, &|| false).unwrap();
     assert!(unpacked(&path) == expected);
     assert!(!packed.join("histories.csv").exists());
 }
@@ -390,7 +390,7 @@ fn a_report_made_from_the_checkpoint_is_that_of_the_run() {
     }
     // and the run goes on as if nothing had been
     let folder = work.path().join("results.carom");
-    open(&folder, &[]).run(&mut Nobody, &|| false).unwrap();
+    open(&folder, &[]).run(&mut Silent, &|| false).unwrap();
     let whole = work.path().join("whole.carom");
     run(&input, &whole, u64::MAX);
     let [one, other] = [&folder, &whole].map(|folder| content(folder));

@@ -7,8 +7,8 @@ use std::fs;
 
 use carom_case::{Input, build, parse};
 
-use crate::compare::Nobody;
 use crate::resume::{after, cases, content, open, run, words};
+use carom_dynamics::Silent;
 
 /// A case file and the overrides that make it small.
 pub type Small = (&'static str, &'static [&'static str]);
@@ -130,12 +130,12 @@ fn stopped_and_gone_on_with(list: &[Small]) {
         let [whole, cut] = ["whole", "cut"].map(|folder| work.path().join(folder));
         for (folder, steps) in [(&whole, STEPS), (&cut, STEPS / 2)] {
             let parts = (&input, &case, &built);
-            let ended = carom_case::run(parts, folder.clone(), &mut Nobody, &after(steps));
+            let ended = carom_case::run(parts, folder.clone(), &mut Silent, &after(steps));
             assert!(ended.unwrap().interrupted || steps == STEPS, "{name}");
         }
         let reported = open(&cut, &[]).report();
         assert!(reported.is_ok(), "{name} has no report: {reported:?}");
-        let gone_on = open(&cut, &[]).run(&mut Nobody, &after(STEPS / 2));
+        let gone_on = open(&cut, &[]).run(&mut Silent, &after(STEPS / 2));
         assert!(gone_on.is_ok(), "{name} does not go on: {gone_on:?}");
         let [whole, cut] = [&whole, &cut].map(|folder| content(folder));
         let names = [&whole, &cut].map(|files| files.keys().cloned().collect::<Vec<_>>());
@@ -227,6 +227,6 @@ fn a_mass_on_a_stop_beside_a_solid_goes_on_and_is_marked_where_it_is() {
     assert!(run(&input, &whole, u64::MAX));
     assert!(!run(&input, &cut, 5));
     open(&cut, &[]).report().unwrap();
-    open(&cut, &[]).run(&mut Nobody, &|| false).unwrap();
+    open(&cut, &[]).run(&mut Silent, &|| false).unwrap();
     assert!(content(&whole) == content(&cut));
 }

@@ -3,7 +3,7 @@
 use std::fs;
 
 use carom_case::{AddedForce, Failed, Input, Resume, Simulation, build, build_with, parse, run};
-use carom_dynamics::{Error, Held, Observer, Stepper};
+use carom_dynamics::{Error, Held, Silent, Stepper};
 
 const BARS: &str = r#"
 carom = 1
@@ -40,18 +40,6 @@ spring.spring = { ends = ["weight", "ground"], axis = [1.0], stiffness = 100.0 }
 time = { end = 1.0, step = 1e-3, scheme.newmark = {} }
 "#;
 
-struct Nothing;
-
-impl Observer for Nothing {
-    fn accepted(&mut self, _: &dyn Stepper) -> Result<(), Error> {
-        Ok(())
-    }
-
-    fn finish(&mut self, _: &dyn Stepper) -> Result<(), Error> {
-        Ok(())
-    }
-}
-
 fn simulation(text: &str, forces: &[AddedForce], folder: Option<&std::path::Path>) -> Simulation {
     let input = Input::from_text("case.toml", text, &[]);
     let (case, locator) = parse(&input).unwrap();
@@ -75,10 +63,7 @@ fn steps_taken_one_by_one_leave_the_folder_of_a_run() {
     let input = Input::from_text("case.toml", BARS, &[]);
     let (case, locator) = parse(&input).unwrap();
     let built = build(&case, &locator, &input).unwrap();
-    run((&input, &case, &built), one.clone(), &mut Nothing, &|| {
-        false
-    })
-    .unwrap();
+    run((&input, &case, &built), one.clone(), &mut Silent, &|| false).unwrap();
     let mut steps = simulation(BARS, &[], Some(&other));
     while !steps.is_done() {
         steps.step().unwrap();

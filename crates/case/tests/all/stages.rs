@@ -225,7 +225,7 @@ time = { end = 1.0, static = { end = 1.0, steps = 2 } }
     let finished = carom_case::run(
         (&input, &case, &built),
         folder.path().join("results"),
-        &mut crate::compare::Nobody,
+        &mut carom_dynamics::Silent,
         &|| false,
     );
     // 100 MPa on 1 mm²; the tolerance of the iterations is 1e-10

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use carom_case::{Built, Input, build, parse, run};
 use carom_output::{Grade, Summary};
 
-use crate::compare::Nobody;
+use carom_dynamics::Silent;
 
 /// Columns of `histories.csv` by name.
 pub type Histories = BTreeMap<String, Vec<f64>>;
@@ -31,7 +31,7 @@ pub fn result_of(text: &str, table: &str, change: impl FnOnce(&mut Built)) -> (S
     let finished = run(
         (&input, &case, &built),
         folder.clone(),
-        &mut Nobody,
+        &mut Silent,
         &|| false,
     );
     let histories = std::fs::read_to_string(folder.join(table)).unwrap();
