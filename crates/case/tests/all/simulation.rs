@@ -3,7 +3,7 @@
 use std::fs;
 
 use carom_case::{AddedForce, Failed, Input, Resume, Simulation, build, build_with, parse, run};
-use carom_dynamics::{Error, Held, Silent, Stepper};
+use carom_dynamics::{Held, Silent};
 
 const BARS: &str = r#"
 carom = 1
