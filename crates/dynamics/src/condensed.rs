@@ -39,7 +39,7 @@ impl Condensed {
     pub fn bytes(&self, rows: usize) -> usize {
         match self {
             Condensed::Dense(_) => 8 * rows * rows,
-            Condensed::Joined(joined) => joined.factor.bytes(),
+            Condensed::Joined(joined) => joined.bytes(),
         }
     }
 }
@@ -128,7 +128,13 @@ impl Joined {
         })
     }
 
-    fn solve(&mut self, r: &mut [f64]) {
+    /// Bytes of the factor.
+    pub fn bytes(&self) -> usize {
+        self.factor.bytes()
+    }
+
+    /// r ← H⁻¹ r.
+    pub fn solve(&mut self, r: &mut [f64]) {
         let (above, below) = self.x.split_at_mut(self.unknowns);
         above.fill(0.0);
         below.copy_from_slice(r);

@@ -139,6 +139,15 @@ impl Control {
         }
     }
 
+    /// At the start of the dynamics after a static stage of `step` steps that ends at `time` (s).
+    #[must_use]
+    pub fn after_stage(dt: f64, step: u64, time: f64) -> Control {
+        Control {
+            origin: (step, time),
+            ..Control::start(dt)
+        }
+    }
+
     /// The instant after one more step of this size from step `step` at `time`, s.
     pub fn instant(&self, step: u64, time: f64, dt: f64) -> f64 {
         let (first, start) = match dt == self.taken {

@@ -25,6 +25,8 @@ pub struct Phases {
     pub friction: Duration,
     /// Balance, records, vector updates.
     pub balance: Duration,
+    /// Multipliers between zones that step apart: making and solving their problem.
+    pub links: Duration,
 }
 
 /// Counts of what factors were made and used for.
@@ -87,6 +89,7 @@ impl Costs {
             phases.contact,
             phases.friction,
             phases.balance,
+            phases.links,
         ];
         times.iter().all(|time| *time < LONGEST) && self.zones.iter().all(Costs::are_times)
     }
@@ -109,6 +112,7 @@ impl Costs {
         phases.contact += its.contact;
         phases.friction += its.friction;
         phases.balance += its.balance;
+        phases.links += its.links;
     }
 
     /// Solutions with a factor: pairs of a forward and a backward sweep.

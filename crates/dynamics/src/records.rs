@@ -256,7 +256,7 @@ impl Records {
 
     /// Starts the clocks and the works of the contacts at the end of a static stage: what is compressed there closes with the first step of the
     /// dynamics, whose balance begins anew.
-    pub(crate) fn begin_dynamics(&mut self) {
+    pub fn begin_dynamics(&mut self) {
         for record in &mut self.contacts {
             (record.first_closing, record.last_force) = (None, None);
             (record.worked, record.largest_work) = (Sum::default(), 0.0);

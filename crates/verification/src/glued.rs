@@ -151,7 +151,7 @@ impl Glued {
     pub(crate) fn run_to(&self, end: f64) -> Result<Figures, Error> {
         let mut zones = crate::witness::zones(&self.zoned()?)?;
         if self.joined {
-            zones.join()?;
+            zones.solve_without_matrix()?;
         }
         let (f0, duration) = (
             0.5 * self.set.impedance() * self.set.speed,

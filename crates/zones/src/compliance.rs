@@ -1,11 +1,42 @@
 //! D of contacts between zones: rates that unit forces, constant over an outer step, leave at its end and over it.
 
-use carom_contact::Rows;
 use carom_dynamics::Driver;
-use carom_dynamics::linked::{Growth, Origin};
+use carom_dynamics::linearised::{Growth, Origin, Steps};
+use carom_system::{LinkRow, System};
 
-use crate::cross_zone::CrossZoneContacts;
+use crate::cross_zone::{Candidates, CrossZoneContacts, Geometry};
 use crate::error::Error;
+
+/// D of the candidates, and what it is combined from.
+pub(crate) struct CrossZoneCompliance {
+    /// Rates at the end of the step and over it that unit forces leave.
+    responses: [Vec<f64>; 2],
+    /// D, and which rows are looked at over the step in it.
+    pub(crate) combined: Vec<f64>,
+    combined_of: Vec<bool>,
+    /// D with the own responses of points of rigid bodies a little larger; empty without such candidates.
+    softened: Vec<f64>,
+    /// Rows by zone and sizes of the steps of the zones that the responses are of.
+    of: (Vec<Vec<(u32, LinkRow)>>, Vec<f64>),
+    pub(crate) rigid: RigidUnknowns,
+    /// Changes with D.
+    pub(crate) version: u64,
+}
+
+/// Which unknowns are those of rigid bodies, and the part by which the own response of their points grows.
+pub(crate) struct RigidUnknowns {
+    are: Vec<bool>,
+    growth: f64,
+}
+
+impl RigidUnknowns {
+    /// Whether a rigid body has part in a point.
+    pub(crate) fn have(&self, geometry: &Geometry, point: u32) -> bool {
+        let (unknowns, _) = geometry.pairing.rows.row(point as usize);
+        let mut unknowns = unknowns.iter();
+        unknowns.any(|unknown| self.are.get(*unknown as usize) == Some(&true))
+    }
+}
 
 impl CrossZoneContacts {
     /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
@@ -18,107 +49,111 @@ impl CrossZoneContacts {
         (substeps, dt): (&[u32], f64),
         origins: &[Origin],
     ) -> Result<(), Error> {
-        let row = |&point: &u32| {
-            let (dofs, coefficients) = self.pairing.rows.row(point as usize);
-            (dofs.to_vec(), coefficients.to_vec())
-        };
-        let of: Vec<_> = self.candidates.iter().map(row).collect();
-        let sizes = substeps.iter().map(|m| dt / f64::from(*m)).collect();
-        if of != self.of || sizes != self.sizes {
-            let n = self.candidates.len();
-            let mut responses = [vec![0.0; n * n], vec![0.0; n * n]];
-            for (zone, driver) in drivers.iter_mut().enumerate() {
-                let rows = &self.rows[zone];
-                if rows.is_empty() {
-                    continue;
-                }
-                let steps = (substeps[zone], Growth::Constant);
-                let [ends, ways] = driver.ramp((rows, steps), &origins[zone])?;
-                for (own, (all, over)) in
-                    [ends, ways].iter().zip(responses.iter_mut().zip([1.0, dt]))
-                {
-                    for (i, (row, _)) in rows.iter().enumerate() {
-                        for (j, (column, _)) in rows.iter().enumerate() {
-                            let mean = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
-                            all[*row as usize * n + *column as usize] += mean / over;
-                        }
+        let zones = (drivers, origins);
+        let (compliance, candidates) = (&mut self.compliance, &self.candidates);
+        compliance.respond(candidates, zones, (substeps, dt))?;
+        compliance.combine((candidates, &self.geometry));
+        Ok(())
+    }
+}
+
+impl CrossZoneCompliance {
+    pub(crate) fn new(system: &System) -> CrossZoneCompliance {
+        let (are, growth) = system.rigid_points();
+        CrossZoneCompliance {
+            responses: Default::default(),
+            combined: Vec::new(),
+            combined_of: Vec::new(),
+            softened: Vec::new(),
+            of: Default::default(),
+            rigid: RigidUnknowns { are, growth },
+            version: 0,
+        }
+    }
+
+    /// D that is solved with.
+    pub(crate) fn matrix(&self) -> &[f64] {
+        match self.softened.is_empty() {
+            true => &self.combined,
+            false => &self.softened,
+        }
+    }
+
+    fn respond(
+        &mut self,
+        candidates: &Candidates,
+        (drivers, origins): (&mut [Driver], &[Origin]),
+        (substeps, dt): (&[u32], f64),
+    ) -> Result<(), Error> {
+        let sizes: Vec<f64> = substeps.iter().map(|m| dt / f64::from(*m)).collect();
+        if candidates.rows == self.of.0 && sizes == self.of.1 {
+            return Ok(());
+        }
+        let n = candidates.forces.len();
+        let mut responses = [vec![0.0; n * n], vec![0.0; n * n]];
+        for (zone, driver) in drivers.iter_mut().enumerate() {
+            let rows = &candidates.rows[zone];
+            if rows.is_empty() {
+                continue;
+            }
+            let steps = Steps {
+                count: substeps[zone],
+                growth: Growth::Constant,
+            };
+            let mut linear = driver.linearised(&origins[zone])?;
+            let [ends, ways] = driver.answers(&mut linear, rows, steps)?;
+            for (own, (all, over)) in [ends, ways].iter().zip(responses.iter_mut().zip([1.0, dt])) {
+                for (i, (row, _)) in rows.iter().enumerate() {
+                    for (j, (column, _)) in rows.iter().enumerate() {
+                        let mean = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
+                        all[*row as usize * n + *column as usize] += mean / over;
                     }
                 }
             }
-            (self.responses, self.of, self.sizes) = (responses, of, sizes);
-            self.matrix_of.clear();
         }
-        self.combine();
+        self.responses = responses;
+        self.of = (candidates.rows.clone(), sizes);
+        self.combined_of.clear();
         Ok(())
     }
 
     /// D of the candidates from the responses at the end of the step and over it.
-    fn combine(&mut self) {
-        if self.matrix_of == self.lasting {
+    fn combine(&mut self, (candidates, geometry): (&Candidates, &Geometry)) {
+        let over = &candidates.over;
+        if self.combined_of == *over {
             return;
         }
-        let n = self.candidates.len();
+        let n = over.len();
         let [ends, means] = &self.responses;
-        self.matrix.clear();
+        self.combined.clear();
         for i in 0..n {
             for j in 0..n {
                 let [end, mean] = [ends[i * n + j], means[i * n + j]];
-                self.matrix.push(match (self.lasting[i], self.lasting[j]) {
+                self.combined.push(match (over[i], over[j]) {
                     (true, true) => mean,
                     (false, false) => end,
                     _ => 0.5 * (end + mean),
                 });
             }
         }
-        self.soften();
-        self.matrix_of.clone_from(&self.lasting);
+        self.soften((candidates, geometry));
+        self.combined_of.clone_from(over);
         self.version += 1;
-    }
-
-    /// Lets all points of rigid bodies begin anew where one does: their rows depend on each other, and D of some that last and some that
-    /// begin would contradict itself.
-    pub(crate) fn let_rigid_begin(&mut self) {
-        let rows = &self.pairing.rows;
-        let own = self
-            .candidates
-            .iter()
-            .map(|&point| self.is_rigid(rows, point));
-        let own: Vec<bool> = own.collect();
-        let begins = own
-            .iter()
-            .zip(&self.lasting)
-            .any(|(own, lasts)| *own && !lasts);
-        if begins {
-            for (lasts, own) in self.lasting.iter_mut().zip(own) {
-                *lasts &= !own;
-            }
-        }
-    }
-
-    /// Whether a rigid body has part in a point.
-    fn is_rigid(&self, rows: &Rows, point: u32) -> bool {
-        let (unknowns, _) = rows.row(point as usize);
-        let mut unknowns = unknowns.iter();
-        unknowns.any(|unknown| self.rigid.0.get(*unknown as usize) == Some(&true))
     }
 
     /// D with the own responses of points of rigid bodies a little larger: more than three such points on a plane have dependent rows, and
     /// share their force ([`System::rigid_points`](carom_system::System::rigid_points)).
-    fn soften(&mut self) {
+    fn soften(&mut self, (candidates, geometry): (&Candidates, &Geometry)) {
         self.softened.clear();
-        let rows = &self.pairing.rows;
-        let own = |point: &u32| self.is_rigid(rows, *point);
-        if !self.candidates.iter().any(own) {
+        let of_point = |point: &u32| self.rigid.have(geometry, *point);
+        let own: Vec<bool> = candidates.points.iter().map(of_point).collect();
+        if !own.contains(&true) {
             return;
         }
-        let mut softened = std::mem::take(&mut self.softened);
-        softened.extend_from_slice(&self.matrix);
-        let n = self.candidates.len();
-        for (i, point) in self.candidates.iter().enumerate() {
-            if self.is_rigid(rows, *point) {
-                softened[i * n + i] *= 1.0 + self.rigid.1;
-            }
+        self.softened.extend_from_slice(&self.combined);
+        let n = candidates.over.len();
+        for row in (0..n).filter(|row| own[row / candidates.width()]) {
+            self.softened[row * n + row] *= 1.0 + self.rigid.growth;
         }
-        self.softened = softened;
     }
 }

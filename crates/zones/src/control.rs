@@ -3,6 +3,7 @@
 use std::mem::take;
 
 use crate::error::Error;
+use crate::response::OuterResponse;
 use crate::zones::{Kept, Zones};
 use carom_dynamics::{Attempts, Driver, adapt};
 use carom_system::Adaptive;
@@ -88,8 +89,8 @@ impl Zones {
         let now = Kept {
             substeps: std::mem::replace(&mut self.substeps, choice.clone()),
             dt: std::mem::replace(&mut self.dt, dt),
-            factor: None,
-            outer: Vec::new(),
+            solver: None,
+            outer: OuterResponse::None,
         };
         self.next = next;
         for (driver, m) in self.drivers.iter_mut().zip(&self.substeps) {
@@ -104,12 +105,12 @@ impl Zones {
         if same {
             return Ok(());
         }
-        if self.factor.is_some() {
+        if self.solver.is_some() {
             if self.kept.len() == KEPT {
                 self.kept.remove(0);
             }
             self.kept.push(Kept {
-                factor: self.factor.take(),
+                solver: self.solver.take(),
                 outer: take(&mut self.outer),
                 ..now
             });
@@ -118,7 +119,7 @@ impl Zones {
         match self.kept.iter().position(of_size) {
             Some(place) => {
                 let kept = self.kept.remove(place);
-                (self.factor, self.outer) = (kept.factor, kept.outer);
+                (self.solver, self.outer) = (kept.solver, kept.outer);
                 Ok(())
             }
             None => self.factorise(),

@@ -49,6 +49,11 @@ impl Zoned {
         cells.flat_map(|&cell| self.model.mesh.element_nodes(cell).iter().copied())
     }
 
+    /// The zone of each node that a body or a discrete element has.
+    pub(crate) fn zones_of_nodes(&self) -> Vec<Option<usize>> {
+        self.zones_of_discrete().0
+    }
+
     /// Refuses discrete elements that join zones which step apart.
     pub(crate) fn check_discrete(&self) -> Result<(), Error> {
         let (of_node, zones) = self.zones_of_discrete();

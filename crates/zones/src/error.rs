@@ -47,7 +47,7 @@ pub enum Error {
         /// Name of the contact.
         contact: String,
         /// Cause.
-        cause: carom_nonsmooth::interface::Failure,
+        cause: carom_nonsmooth::Unsolved,
     },
     /// Forces of contacts between zones that do not settle.
     #[error(
@@ -103,15 +103,10 @@ pub enum Error {
         /// Why, where that is known, and what would do.
         cause: &'static str,
     },
-    /// Constraints in a model whose zones step apart.
-    #[error("constraint '{constraint}': zones of unequal steps have none; take equal steps")]
-    ConstraintInZones {
-        /// Name of the constraint.
-        constraint: String,
-    },
     /// Discrete elements in several zones that step apart.
     #[error(
-        "`{element}`: its nodes are in the zones '{one}' and '{other}', which step apart; give each zone elements of its own, or take equal steps"
+        "`{element}`: its nodes are in the zones '{one}' and '{other}', which step apart: its force, of u_1(t) - u_2(t), is needed at instants t \
+         that one of them does not have; give each zone elements of its own, or take equal steps"
     )]
     DiscreteInZones {
         /// Name of the element.

@@ -195,7 +195,10 @@ impl Zoned {
             motions: motions.filter(|motion| !motion.nodes.is_empty()).collect(),
             nodal: self.nodal(zone, &used),
             base: whole.base.clone(),
-            turns: Vec::new(),
+            turns: (whole.turns.iter())
+                .filter(|turn| used[turn.node as usize])
+                .cloned()
+                .collect(),
             damping: zone.bodies.iter().map(damping).collect(),
             preload: None,
             waiting: Vec::new(),

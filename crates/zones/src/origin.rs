@@ -4,7 +4,7 @@
 //! that took many passes: after a large rotation, or where a zone has yielded.
 
 use crate::zones::Zones;
-use carom_dynamics::linked::Origin;
+use carom_dynamics::linearised::Origin;
 
 /// Passes of a step after which H is made anew.
 const MANY: usize = 8;

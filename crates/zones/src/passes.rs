@@ -37,10 +37,10 @@ impl Zones {
         if worst <= TOLERANCE * speed {
             return Ok(true);
         }
-        let Some(factor) = &mut self.factor else {
+        if self.solver.is_none() {
             return Ok(true);
-        };
-        factor.solve(&mut self.defect);
+        }
+        self.solve_links(0.1 * TOLERANCE * speed)?;
         let [old, new] = &self.multipliers;
         let target = match which {
             0 => &self.pointwise[1],

@@ -16,14 +16,14 @@ impl Zones {
         self.samples.clear();
         self.works[0].fill(0.0);
         self.passes = 0;
-        let old = &self.multipliers[0];
+        let old = self.multipliers[0].clone();
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             if self.substeps[k] != 1 {
                 continue;
             }
             let weights = driver.link_weights();
             driver.prepare()?;
-            self.pointwise[0].copy_from_slice(old);
+            self.pointwise[0].copy_from_slice(&old);
             self.pointwise[0].iter_mut().for_each(|l| *l *= weights[0]);
             driver.set_link_force(&self.rows[k], &self.pointwise[0]);
             driver.complete()?;
@@ -32,10 +32,9 @@ impl Zones {
                 end[*row as usize] += on(terms, &driver.ended().motion.v);
             }
         }
-        for i in 0..n {
-            let of_multipliers = dot_row(&self.outer, i, old);
-            start[i] -= of_multipliers;
-        }
+        let mut start = std::mem::take(&mut self.free[0]);
+        self.add_outer_response(&old, (-1.0, &mut start))?;
+        self.free[0] = start;
         let [old, new] = &mut self.multipliers;
         new.copy_from_slice(old);
         let m = self.substeps.iter().copied().max().unwrap_or(1);
@@ -75,10 +74,11 @@ impl Zones {
         for pass in 1..=MOST_PASSES {
             self.passes += 1;
             for i in 0..self.defect.len() {
-                self.defect[i] = (1.0 - part) * self.free[0][i]
-                    + part * self.free[1][i]
-                    + dot_row(&self.outer, i, &self.pointwise[1]);
+                self.defect[i] = (1.0 - part) * self.free[0][i] + part * self.free[1][i];
             }
+            let mut defect = std::mem::take(&mut self.defect);
+            self.add_outer_response(&self.pointwise[1].clone(), (1.0, &mut defect))?;
+            self.defect = defect;
             for (k, driver) in self.drivers.iter_mut().enumerate() {
                 if self.substeps[k] == 1 {
                     continue;
@@ -122,11 +122,4 @@ impl Zones {
         self.multipliers[1].copy_from_slice(&self.pointwise[1]);
         Ok(())
     }
-}
-
-/// Row of a square matrix, row-major, times a vector.
-fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
-    let n = x.len();
-    let entries = matrix[row * n..(row + 1) * n].iter().zip(x);
-    entries.map(|(a, x)| a * x).sum()
 }

@@ -4,12 +4,15 @@ use std::collections::BTreeSet;
 
 use carom_bodies::Rotations;
 use carom_contact::Integration;
-use carom_contact::law::Level;
 
 use crate::error::Error;
 use crate::model::{LinkKind, ModelZone, Zoned};
 use carom_schemes::step_map::Impulse;
 use carom_system::{self as system, ModelBody, ModelLink, Refused};
+
+/// What numbers of inner steps links with multipliers at every inner instant take.
+const POINTWISE: &str = "one, or as many as the other zones with more than one: with link = \"gravouil-combescure\" rows Σ C v_j = 0 hold at \
+                         every inner instant t_j, which zones with other numbers of steps do not have; link = \"prakash-hjelmstad\" takes any";
 
 impl Zoned {
     /// Refuses contacts that zones of unequal steps cannot have between them.
@@ -30,18 +33,6 @@ impl Zoned {
 
     /// Refuses what zones that step apart do not take.
     pub(crate) fn check(&self) -> Result<(), Error> {
-        if let Some(constraint) = self.model.constraints.first() {
-            return Err(Error::ConstraintInZones {
-                constraint: constraint.name.clone(),
-            });
-        }
-        if self.model.nonlinear.preload.is_some() {
-            return Err(system::Error::Nonlinear {
-                what: Refused::StaticStage,
-                why: "links between zones join velocities, which it has none of; leave out the stage or the zones",
-            }
-            .into());
-        }
         self.check_discrete()?;
         self.check_turning()?;
         self.check_schemes()?;
@@ -103,7 +94,8 @@ impl Zoned {
 
     /// Refuses schemes whose velocities the multipliers of links between zones that step apart cannot hold.
     fn check_schemes(&self) -> Result<(), Error> {
-        let linked = |zone: usize| self.links.iter().any(|link| link.zones.contains(&zone));
+        let joined = self.zones_of_rows();
+        let linked = |zone: usize| joined.iter().any(|zones| zones.contains(&zone));
         for (k, zone) in self.zones.iter().enumerate() {
             let scheme = zone.scheme.get();
             let answers = scheme.step_map(self.model.dt).velocity.x != 0.0;
@@ -120,7 +112,8 @@ impl Zoned {
 
     /// Refuses numbers of inner steps that do not go together.
     pub(crate) fn check_steps(&self) -> Result<(), Error> {
-        let mut many = None;
+        let pointwise = self.kind == LinkKind::GravouilCombescure && !self.links.is_empty();
+        let mut many = [None; 2];
         for zone in &self.zones {
             let refuse = |accepted| {
                 Err(Error::Substeps {
@@ -132,8 +125,11 @@ impl Zoned {
             if zone.substeps == 0 || zone.far == Some(0) {
                 return refuse("at least one");
             }
-            if zone.substeps > 1 && *many.get_or_insert(zone.substeps) != zone.substeps {
-                return refuse("one, or as many as the other zones with more than one");
+            let far = zone.far.unwrap_or(zone.substeps);
+            for (many, own) in many.iter_mut().zip([zone.substeps, far]) {
+                if pointwise && own > 1 && *many.get_or_insert(own) != own {
+                    return refuse(POINTWISE);
+                }
             }
         }
         Ok(())
@@ -143,12 +139,6 @@ impl Zoned {
 /// Why zones of unequal steps do not take a contact.
 fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
     let of_model = &zoned.model.contacts[contact];
-    if of_model.law.get().level() != Level::Rate {
-        return Some("take a law in the rate, or equal steps");
-    }
-    if of_model.friction > 0.0 {
-        return Some("friction needs equal steps");
-    }
     if let Integration::Weak { .. } = of_model.integration {
         return Some("the weak form needs equal steps; take node or mortar");
     }

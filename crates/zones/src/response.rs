@@ -1,22 +1,79 @@
 //! H: the velocity that multipliers leave in the rows of the links, without contact and of the linearised zones.
+//!
+//! H of few rows is made, column by column, and factored. Of more rows nothing is made that grows with their square: where each zone
+//! takes one step with a multiplier, the rows join the matrices of the implicit zones ([`Joined`]); where zones take several steps, H
+//! times a vector is what these steps make of it, and `H ΔL = r` is solved by conjugate gradients ([`IteratedLinks`]).
+
+use std::time::Instant;
 
 use carom_algebra::dense::DenseCholesky;
 
 use crate::error::Error;
+use crate::iterated::IteratedLinks;
 use crate::model::LinkKind;
 use crate::zones::Zones;
 use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
-use carom_dynamics::linked::Growth;
+use carom_dynamics::linearised::{Answered, Growth, LinearZone, Steps};
 use carom_dynamics::operator::assembled;
 use carom_system::{LinkRow, System};
 
+/// Rows above which H of unequal steps is not made: a column costs as much as the steps of all zones, and iterations as few tens of columns in each
+/// outer step.
+const FEW: usize = 300;
+
+/// How `H ΔL = r` is solved.
+pub(crate) enum LinkSolver {
+    /// With a factor.
+    Factor(Condensed),
+    /// By iterations.
+    Iterated(Box<IteratedLinks>),
+}
+
+impl LinkSolver {
+    /// Bytes held. `rows`: their number.
+    pub(crate) fn bytes(&self, rows: usize) -> usize {
+        match self {
+            LinkSolver::Factor(factor) => factor.bytes(rows),
+            LinkSolver::Iterated(iterated) => iterated.bytes(rows),
+        }
+    }
+}
+
+/// The part of H of zones with one step, for multipliers at every inner instant.
+#[derive(Default)]
+pub(crate) enum OuterResponse {
+    /// There are no such multipliers.
+    #[default]
+    None,
+    /// The matrix, row-major.
+    Matrix(Vec<f64>),
+    /// By a step of each zone, none for those with several.
+    Steps(Vec<Option<LinearZone>>),
+}
+
 impl Zones {
-    /// Makes the factor of H anew in the joined form, whatever the number of rows: to compare the two.
+    /// Solves `H ΔL = r` from now on as with many rows, without H: to compare the two.
     ///
     /// # Errors
-    /// Redundant rows.
-    pub fn join(&mut self) -> Result<(), Error> {
-        self.factor = Some(self.joined()?);
+    /// Redundant rows, an effective matrix that is not positive definite.
+    pub fn solve_without_matrix(&mut self) -> Result<(), Error> {
+        let equal = self.substeps.iter().all(|m| *m == 1);
+        if !equal && self.kind == LinkKind::PrakashHjelmstad {
+            let zones = (&mut self.drivers[..], &self.origins[..]);
+            let links = (&self.rows, self.norms.len());
+            let iterated = IteratedLinks::new(zones, links, (&self.substeps, self.dt))?;
+            self.solver = Some(LinkSolver::Iterated(Box::new(iterated)));
+            return Ok(());
+        }
+        if !equal {
+            let zones = self.drivers.iter_mut().zip(&self.origins);
+            let outer = zones.zip(&self.substeps).map(|((driver, origin), m)| {
+                let zone = (*m == 1).then(|| driver.linearised(origin));
+                zone.transpose()
+            });
+            self.outer = OuterResponse::Steps(outer.collect::<Result<_, _>>()?);
+        }
+        self.solver = Some(LinkSolver::Factor(self.joined()?));
         Ok(())
     }
 
@@ -35,25 +92,39 @@ impl Zones {
 
     /// Makes and factors H of the multipliers that a pass looks for.
     pub(crate) fn factorise(&mut self) -> Result<(), Error> {
+        let begin = Instant::now();
+        let made = self.make_solver();
+        self.link_time += begin.elapsed();
+        made
+    }
+
+    fn make_solver(&mut self) -> Result<(), Error> {
         if let Some(links) = &mut self.turning {
             links.at_origins(&self.origins, &mut self.rows);
         }
         let n = self.norms.len();
-        let alike = self.substeps.iter().all(|m| *m == 1);
-        if n > DENSE && alike {
-            return self.join();
+        let equal = self.substeps.iter().all(|m| *m == 1);
+        match (n, n > if equal { DENSE } else { FEW }) {
+            (0, _) => Ok(()),
+            (_, false) => self.factorise_dense(),
+            (_, true) => self.solve_without_matrix(),
         }
-        if n == 0 {
-            return Ok(());
-        }
+    }
+
+    fn factorise_dense(&mut self) -> Result<(), Error> {
+        let n = self.norms.len();
         let (mut h, mut outer) = (vec![0.0; n * n], vec![0.0; n * n]);
         for (k, driver) in self.drivers.iter_mut().enumerate() {
             let rows = &self.rows[k];
-            let steps = match self.kind {
-                LinkKind::GravouilCombescure => 1,
-                LinkKind::PrakashHjelmstad => self.substeps[k],
+            let steps = Steps {
+                count: match self.kind {
+                    LinkKind::GravouilCombescure => 1,
+                    LinkKind::PrakashHjelmstad => self.substeps[k],
+                },
+                growth: Growth::Linear,
             };
-            let [own, _] = driver.ramp((rows, (steps, Growth::Linear)), &self.origins[k])?;
+            let mut zone = driver.linearised(&self.origins[k])?;
+            let [own, _] = driver.answers(&mut zone, rows, steps)?;
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
                     let place = *row as usize * n + *column as usize;
@@ -65,12 +136,77 @@ impl Zones {
                 }
             }
         }
-        self.outer = outer;
+        self.outer = OuterResponse::Matrix(outer);
         let factor = DenseCholesky::new(n, &h);
         let factor = factor.map_err(|cause| carom_dynamics::Error::Redundant { rows: n, cause })?;
-        self.factor = Some(Condensed::Dense(factor));
+        self.solver = Some(LinkSolver::Factor(Condensed::Dense(factor)));
         Ok(())
     }
+
+    /// ΔL of what the rows miss, in place.
+    ///
+    /// # Errors
+    /// Iterations that do not end.
+    pub(crate) fn solve_links(&mut self, goal: f64) -> Result<(), Error> {
+        let begin = Instant::now();
+        let solved = match &mut self.solver {
+            None => Ok(()),
+            Some(LinkSolver::Factor(factor)) => {
+                factor.solve(&mut self.defect);
+                Ok(())
+            }
+            Some(LinkSolver::Iterated(iterated)) => {
+                let zones = (&mut self.drivers[..], &self.rows[..]);
+                iterated.solve(zones, (&mut self.defect, &self.norms), goal)
+            }
+        };
+        self.link_time += begin.elapsed();
+        solved
+    }
+
+    /// Adds to `out` the velocities that multipliers leave in the rows over one step of the zones with one step.
+    pub(crate) fn add_outer_response(
+        &mut self,
+        multipliers: &[f64],
+        (factor, out): (f64, &mut [f64]),
+    ) -> Result<(), Error> {
+        match &mut self.outer {
+            OuterResponse::None => {}
+            OuterResponse::Matrix(matrix) => {
+                for (i, out) in out.iter_mut().enumerate() {
+                    *out += factor * dot_row(matrix, i, multipliers);
+                }
+            }
+            OuterResponse::Steps(zones) => {
+                for ((zone, driver), rows) in
+                    zones.iter_mut().zip(&mut self.drivers).zip(&self.rows)
+                {
+                    let Some(zone) = zone else { continue };
+                    let steps = Steps {
+                        count: 1,
+                        growth: Growth::Linear,
+                    };
+                    let [mut ends, mut ways] = [vec![0.0; rows.len()], vec![0.0; rows.len()]];
+                    let answered = Answered {
+                        ends: &mut ends,
+                        ways: &mut ways,
+                    };
+                    driver.answer(zone, (rows, multipliers), steps, answered)?;
+                    for ((row, _), end) in rows.iter().zip(ends) {
+                        out[*row as usize] += factor * end;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Row of a square matrix, row-major, times a vector.
+fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
+    let n = x.len();
+    let entries = matrix[row * n..(row + 1) * n].iter().zip(x);
+    entries.map(|(a, x)| a * x).sum()
 }
 
 /// A zone in H, with A = `mass` M + `stiffness` K.

@@ -1,6 +1,7 @@
 //! The start of zones: rows, the factor of H, velocities that agree, the first multipliers.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use carom_algebra::dense::DenseCholesky;
 
@@ -8,11 +9,12 @@ use crate::cross_zone::CrossZoneContacts;
 use crate::error::Error;
 use crate::model::Zoned;
 use crate::moves::Moves;
-use crate::response::answer;
+use crate::response::{OuterResponse, answer};
+use crate::stage::StageEnd;
 use crate::turning::{ByZone, TurningLinks};
 use crate::zones::Zones;
 use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
-use carom_dynamics::linked::Origin;
+use carom_dynamics::linearised::Origin;
 use carom_dynamics::operator::Operators;
 use carom_dynamics::{Control, Driver};
 use carom_system::{LinkRow, System, on};
@@ -28,20 +30,14 @@ impl Zones {
         zoned.check_across()?;
         let systems = zoned.systems()?;
         let contacts = zoned.contacts();
-        let count = zoned.links.iter().map(|link| link.rows.len()).sum();
-        let mut rows = rows(zoned, &systems);
+        let links = zoned.row_ranges();
+        let count = links.last().map_or(0, |(_, range)| range.end);
+        let mut rows = zoned.rows(&systems)?;
         let mut turning = TurningLinks::new(zoned, &systems, &mut rows)?;
         let mut norms = vec![0.0; count];
         for (row, terms) in rows.iter().flatten() {
             norms[*row as usize] += terms.iter().map(|(_, c)| c.abs()).sum::<f64>();
         }
-        let mut first = 0;
-        let links = zoned.links.iter().map(|link| {
-            let range = first..first + link.rows.len();
-            first = range.end;
-            (link.name.clone(), range)
-        });
-        let links = links.collect();
         let mut drivers = systems
             .iter()
             .map(|system| Driver::of_zone(Arc::clone(system)))
@@ -50,8 +46,10 @@ impl Zones {
         if between.is_some() {
             make_room(&mut drivers, &systems)?;
         }
-        let multipliers = start(&mut drivers, (&mut rows, &mut turning, count), &|zone| {
-            systems[zone].initial.displacement.clone()
+        let links_of = (&mut rows, &mut turning, count);
+        let multipliers = start(&mut drivers, links_of, &mut |driver, zone, begun| {
+            driver.link(&begun.force);
+            driver.restart(&systems[zone].initial.displacement, begun.velocity)
         })?;
         let substeps: Vec<u32> = zoned.zones.iter().map(|zone| zone.substeps).collect();
         let far = zoned.zones.iter();
@@ -90,8 +88,8 @@ impl Zones {
             time: 0.0,
             earlier: [multipliers.clone(), multipliers.clone()],
             multipliers: [multipliers.clone(), multipliers],
-            factor: None,
-            outer: Vec::new(),
+            solver: None,
+            outer: OuterResponse::None,
             samples: Vec::new(),
             passes: 0,
             all_passes: 0,
@@ -101,6 +99,7 @@ impl Zones {
             free: [vec![0.0; count], vec![0.0; count]],
             pointwise: [vec![0.0; count], vec![0.0; count]],
             moves: Moves::default(),
+            link_time: Duration::ZERO,
             mixes: Vec::new(),
             works: [Vec::new(), Vec::new()],
             forced: None,
@@ -143,53 +142,65 @@ impl Zones {
             }
             driver.restart(u, v)?;
         }
+        let links = (&mut self.rows, &mut self.turning, self.norms.len());
+        let multipliers = start(&mut self.drivers, links, &mut |driver, zone, begun| {
+            driver.link(&begun.force);
+            driver.restart(&motions[zone][0], begun.velocity)
+        })?;
+        self.begin_at((0, 0.0), multipliers);
+        if let Some(between) = &mut self.between {
+            between.restart(&self.drivers);
+        }
+        Ok(())
+    }
+
+    /// Begins the dynamics at the end of a static stage.
+    ///
+    /// # Errors
+    /// As [`Zones::new`].
+    pub(crate) fn begin_dynamics(&mut self, end: &StageEnd) -> Result<(), Error> {
+        let still = |driver: &Driver| vec![0.0; driver.system().unknowns()];
+        for (driver, state) in self.drivers.iter_mut().zip(&end.zones) {
+            let velocity = driver.system().initial.velocity.clone();
+            driver.begin_dynamics(state, &velocity, still(driver))?;
+        }
+        let mut pushed: Vec<Vec<f64>> = self.drivers.iter().map(still).collect();
+        if let Some(between) = &mut self.between {
+            between.begin_dynamics(&self.drivers, end);
+            for (zone, (driver, pushed)) in self.drivers.iter_mut().zip(&mut pushed).enumerate() {
+                *pushed = between.pushed(zone, driver.system().unknowns());
+                let velocity = driver.system().initial.velocity.clone();
+                driver.begin_dynamics(&end.zones[zone], &velocity, pushed.clone())?;
+            }
+        }
+        let links = (&mut self.rows, &mut self.turning, self.norms.len());
+        let multipliers = start(&mut self.drivers, links, &mut |driver, zone, begun| {
+            let own = begun.force.iter().zip(&pushed[zone]);
+            let force = own.map(|(own, pushed)| own + pushed).collect();
+            driver.begin_dynamics(&end.zones[zone], begun.velocity, force)
+        })?;
+        let (step, time) = (end.whole.step, end.whole.time);
+        self.begin_at((step, time), multipliers);
+        self.control = Control::after_stage(self.largest, step, time);
+        Ok(())
+    }
+
+    /// Begins the steps from one at a time (s), with these multipliers.
+    fn begin_at(&mut self, (step, time): (u64, f64), multipliers: Vec<f64>) {
         if let Some(links) = &mut self.turning {
             links.restart();
         }
-        let links = (&mut self.rows, &mut self.turning, self.norms.len());
-        let multipliers = start(&mut self.drivers, links, &|zone| motions[zone][0].clone())?;
-        (self.step, self.time) = (0, 0.0);
+        (self.step, self.time) = (step, time);
         self.control = Control::start(self.largest);
         self.sizes = [self.largest; 2];
         self.earlier = [multipliers.clone(), multipliers.clone()];
         self.multipliers = [multipliers.clone(), multipliers];
         self.start_works();
-        if let Some(between) = &mut self.between {
-            between.restart(&self.drivers);
-        }
         let origins: Vec<Origin> = self.drivers.iter().map(Origin::of).collect();
         if origins != self.origins {
             self.start_from(origins);
         }
-        Ok(())
     }
-}
-
-/// The terms of all rows by zone, on its unknowns, with the sign of the side.
-fn rows(zoned: &Zoned, systems: &[Arc<System>]) -> ByZone {
-    let mut by_zone: ByZone = vec![Vec::new(); systems.len()];
-    let mut number = 0;
-    for link in &zoned.links {
-        for row in &link.rows {
-            let sides = [
-                (link.zones[0], 1.0, &row.inner),
-                (link.zones[1], -1.0, &row.outer),
-            ];
-            for (zone, sign, terms) in sides {
-                let system = &systems[zone];
-                let dof = |term: &carom_arlequin::Term| {
-                    let node = system.number[term.node as usize];
-                    system.unknowns.first(node) as u32 + term.component
-                };
-                let terms = terms
-                    .iter()
-                    .map(|term| (dof(term), sign * term.coefficient));
-                by_zone[zone].push((number, terms.collect()));
-            }
-            number += 1;
-        }
-    }
-    by_zone
 }
 
 /// Starts the drivers with room for forces from other zones.
@@ -201,12 +212,22 @@ fn make_room(drivers: &mut [Driver], systems: &[Arc<System>]) -> Result<(), Erro
     Ok(())
 }
 
-/// Starts the drivers with velocities that satisfy the rows; returns the first multipliers. `displacement`: with which a zone was started, m, of
-/// rotations the increment, rad.
+/// With what a zone begins.
+struct Begun<'a> {
+    /// Velocity by unknown, m/s.
+    velocity: &'a [f64],
+    /// Force of the links by unknown, N.
+    force: Vec<f64>,
+}
+
+/// How a driver of a zone begins.
+type Begin<'a> = dyn FnMut(&mut Driver, usize, Begun) -> Result<(), carom_dynamics::Error> + 'a;
+
+/// Starts the drivers with velocities that satisfy the rows; returns the first multipliers.
 fn start(
     drivers: &mut [Driver],
     (rows, turning, count): (&mut ByZone, &mut Option<TurningLinks>, usize),
-    displacement: &dyn Fn(usize) -> Vec<f64>,
+    begin: &mut Begin,
 ) -> Result<Vec<f64>, Error> {
     if count == 0 {
         return Ok(Vec::new());
@@ -238,12 +259,15 @@ fn start(
     let accelerations: Vec<Vec<f64>> = (0..drivers.len())
         .map(|k| {
             let system = drivers[k].system();
-            let f = &drivers[k].state().motion.internal_force;
+            let motion = &drivers[k].state().motion;
             let load = drivers[k].load();
-            let balance: Vec<f64> = (0..f.len())
+            let balance: Vec<f64> = (0..load.len())
                 .map(|i| match system.fixed[i] {
                     true => 0.0,
-                    false => load[i] - f[i],
+                    false => {
+                        let outside = load[i] + motion.contact_force[i] + motion.link_of(i);
+                        outside - motion.internal_force[i]
+                    }
                 })
                 .collect();
             mass.solve(k, &balance)
@@ -262,9 +286,9 @@ fn start(
     }
     factor.solve(&mut multipliers);
     for (k, driver) in drivers.iter_mut().enumerate() {
-        let u = displacement(k);
-        driver.link(&forces(&rows[k], &multipliers, u.len()));
-        driver.restart(&u, &velocities[k])?;
+        let force = forces(&rows[k], &multipliers, driver.system().unknowns());
+        let velocity = &velocities[k];
+        begin(driver, k, Begun { velocity, force })?;
     }
     Ok(multipliers)
 }

@@ -176,7 +176,7 @@ impl Zones {
             }
             driver.complete()?;
             if let Some(between) = &mut self.between {
-                between.look(k, driver, (j + 1 == m, self.dt));
+                between.candidates.look(k, driver, (j + 1 == m, self.dt));
             }
             if m > 1 {
                 if j == 0 {

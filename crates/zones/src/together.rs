@@ -34,10 +34,14 @@ impl Zoned {
         }
     }
 
-    /// Whether a static stage comes before links, which join velocities.
+    /// Whether a static stage comes before links, which join velocities, or supports move as prescribed, of which links of one system take no
+    /// account.
     fn has_stage(&self) -> bool {
-        let follows = !self.model.nonlinear.motions.is_empty();
-        !self.links.is_empty() && (self.model.nonlinear.preload.is_some() || follows)
+        let given = &self.model.nonlinear;
+        let follows = !given.motions.is_empty() || !given.turns.is_empty();
+        let links = !self.links.is_empty();
+        let rows = links || !self.model.constraints.is_empty();
+        rows && given.preload.is_some() || links && follows
     }
 
     /// The model as one, in which no zones share nodes: each but the first has nodes of its own at the same places.

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use carom_algebra::rotation::Rotation;
 use carom_algebra::unknowns::{NodeKind, Unknowns};
 use carom_dynamics::Driver;
-use carom_dynamics::linked::Origin;
+use carom_dynamics::linearised::Origin;
 use carom_system::{LinkRow, ModelLink, System, Turned, TurningRows};
 
 use crate::error::Error;

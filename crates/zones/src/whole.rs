@@ -4,6 +4,9 @@
 //! Nothing here influences the steps. The largest terms of the balance are those of the sum over the zones, which no
 //! zone knows: they are saved beside the state of the zones.
 
+mod gathered;
+mod stage;
+
 use std::sync::Arc;
 
 use carom_algebra::Interrupt;
@@ -12,18 +15,23 @@ use serde::{Deserialize, Serialize};
 use crate::error::Error;
 use crate::model::Zoned;
 use crate::places::Places;
+use crate::stage::Stage;
 use crate::zones::{Zones, ZonesState};
 use carom_dynamics::Costs;
 use carom_dynamics::records::Records;
-use carom_dynamics::state::{InterfaceState, State, empty_state};
+use carom_dynamics::state::{State, empty_state};
 use carom_dynamics::{Balance, Impact, Ledger, Tolerated};
 use carom_dynamics::{ContactReport, ContactSample, Notices, StepReport};
 use carom_dynamics::{FailedProblem, Stepper};
-use carom_system::{Motion, System};
+use carom_system::System;
+pub(crate) use gathered::take_point;
+use gathered::{add_forces, forces_mut, take_motion, take_points};
 
 /// Zones with the model as one.
 pub struct Whole {
     zones: Zones,
+    /// The static stage under way, and what it cost once it is over.
+    stage: (Option<Box<Stage>>, Costs),
     system: Arc<System>,
     names: Vec<String>,
     links: Vec<[usize; 2]>,
@@ -43,6 +51,8 @@ pub struct Whole {
 /// What a run in zones goes on from.
 #[derive(Serialize, Deserialize)]
 struct Saved {
+    /// Of a static stage under way.
+    stage: Option<State>,
     zones: ZonesState,
     ledger: Ledger,
     /// Impacts of all zones in the order in which they were told.
@@ -55,8 +65,12 @@ impl Whole {
     /// # Errors
     /// As [`Zones::new`].
     pub fn new(zoned: &Zoned, system: Arc<System>) -> Result<Whole, Error> {
+        let stage = Stage::new(zoned, &system)?;
         let mut whole = Whole::around(Zones::new(zoned)?, zoned, system);
-        whole.gather();
+        match stage {
+            Some(stage) => whole.gather_stage(Box::new(stage)),
+            None => whole.gather(),
+        }
         Ok(whole)
     }
 
@@ -84,6 +98,11 @@ impl Whole {
         for (state, driver) in saved.zones.zones.iter().zip(&zones.drivers) {
             state.check(driver.system())?;
         }
+        let stage = match (&saved.stage, Stage::new(zoned, &system)?) {
+            (Some(state), Some(stage)) => Some(stage.resume(state)?),
+            (None, _) => None,
+            (Some(_), None) => return Err(refused("it belongs to another model".to_owned())),
+        };
         zones.resume(&saved.zones);
         let mut whole = Whole::around(zones, zoned, system);
         whole.state.ledger = saved.ledger;
@@ -92,7 +111,10 @@ impl Whole {
         whole.impacts = drivers.map(|d| d.state().records.impacts.len()).collect();
         let between = whole.zones.between();
         whole.impacts_between = between.map_or(0, |(_, own)| own.records.impacts.len());
-        whole.gather();
+        match stage {
+            Some(stage) => whole.gather_stage(Box::new(stage)),
+            None => whole.gather(),
+        }
         Ok(whole)
     }
 
@@ -108,7 +130,7 @@ impl Whole {
         state.records = Records::of(&system);
         Whole {
             names: zoned.zones.iter().map(|zone| zone.name.clone()).collect(),
-            links: zoned.links.iter().map(|link| link.zones).collect(),
+            links: zoned.zones_of_rows(),
             bodies: zoned.zones.iter().map(|zone| zone.bodies.clone()).collect(),
             places: places.collect(),
             impacts: vec![0; zones.drivers.len()],
@@ -120,6 +142,7 @@ impl Whole {
                 ..StepReport::default()
             },
             zones,
+            stage: (None, Costs::default()),
             system,
         }
     }
@@ -129,6 +152,7 @@ impl Whole {
         for (driver, own) in self.zones.drivers.iter_mut().zip(&costs.zones) {
             driver.add_earlier(own);
         }
+        self.zones.link_time += costs.phases.links;
     }
 
     /// The zones.
@@ -170,9 +194,11 @@ impl Whole {
         let (initial, mut balance) = (sum(|l| &l.initial), sum(|l| &l.balance));
         if let Some((_, between)) = self.zones.between() {
             // the zones take forces between them for those of links
-            let work: f64 = between.works.iter().sum();
-            balance.work_links -= work;
+            let [work, of_friction] =
+                [0, 1].map(|k| between.works.iter().map(|w| w[k]).sum::<f64>());
+            balance.work_links -= work + of_friction;
             balance.work_contact += work;
+            balance.dissipation_friction -= of_friction;
         }
         let mut left = [Tolerated::default(); 2];
         for driver in &self.zones.drivers {
@@ -195,42 +221,15 @@ impl Whole {
         }
         for (driver, places) in self.zones.drivers.iter().zip(&self.places) {
             let motion = &driver.state().motion;
-            for &(from, to) in &places.own {
-                let (from, to) = (from as usize, to as usize);
-                whole.u[to] = motion.u[from];
-                whole.v[to] = motion.v[from];
-                whole.a[to] = motion.a[from];
-            }
-            for &(from, to) in &places.frames {
-                whole.frames[to] = motion.frames[from];
-            }
-            for (from, to) in &places.histories {
-                whole.history[to.clone()].copy_from_slice(&motion.history[from.clone()]);
-            }
-            let forces = [
-                &motion.internal_force,
-                &motion.contact_force,
-                &motion.link_force,
-            ];
-            for (whole, force) in forces_mut(whole).into_iter().zip(forces) {
-                // a zone without links has no link forces
-                for &(from, to) in places.unknowns.iter().filter(|_| !force.is_empty()) {
-                    whole[to as usize] += force[from as usize];
-                }
-            }
+            take_motion(whole, (motion, places));
+            add_forces(whole, (motion, places));
         }
     }
 
     fn gather_interface(&mut self) {
         let whole = &mut self.state.interface;
         for (driver, places) in self.zones.drivers.iter().zip(&self.places) {
-            let interface = &driver.state().interface;
-            if !interface.friction.is_empty() {
-                whole.friction.resize(whole.force.len(), [0.0; 2]);
-            }
-            for &(from, to) in &places.points {
-                take_point((whole, to as usize), (interface, from as usize));
-            }
+            take_points(whole, (&driver.state().interface, places));
         }
         let Some((contacts, between)) = self.zones.between() else {
             return;
@@ -238,6 +237,9 @@ impl Whole {
         let points = contacts
             .iter()
             .flat_map(|&contact| self.system.points_of(contact));
+        if !between.interface.friction.is_empty() {
+            whole.friction.resize(whole.force.len(), [0.0; 2]);
+        }
         for (own, point) in points.enumerate() {
             take_point((whole, point), (&between.interface, own));
         }
@@ -325,25 +327,30 @@ impl Whole {
         }
     }
 
-    /// The samples of the zones, contact by contact in the parts of the step; none where no zone has inner steps.
+    /// The samples of the zones, contact by contact in the parts of the step, of which each step of a zone has a whole number; none where no zone
+    /// has inner steps.
     fn place_samples(&mut self) {
-        let parts = self.zones.substeps.iter().copied().max().unwrap_or(1) as usize;
+        let parts = common_multiple(&self.zones.substeps) as usize;
         let samples = &mut self.report.samples;
         if parts == 1 {
             samples.clear();
             return;
         }
+        let (dt, start) = (self.zones.dt, self.zones.time() - self.zones.dt);
         samples.resize_with(parts, || ContactSample {
             contacts: vec![ContactReport::default(); self.system.contacts.len()],
             ..ContactSample::default()
         });
+        for (part, number) in samples.iter_mut().zip(1..) {
+            part.dt = dt / parts as f64;
+            part.time = start + dt * (f64::from(number) / parts as f64);
+        }
         self.placed.fill(0);
         for sample in self.zones.samples() {
             let zone = sample.zone;
-            let range = match self.zones.substeps[zone] {
-                1 => 0..parts,
-                _ => self.placed[zone]..self.placed[zone] + 1,
-            };
+            let of_step = parts / self.zones.substeps[zone] as usize;
+            let first = self.placed[zone] * of_step;
+            let range = first..first + of_step;
             self.placed[zone] += 1;
             let of_part = range.len() == 1;
             for part in &mut samples[range] {
@@ -358,32 +365,29 @@ impl Whole {
     }
 }
 
-/// Makes a point of the whole what it is where it is solved for.
-fn take_point((whole, to): (&mut InterfaceState, usize), (own, from): (&InterfaceState, usize)) {
-    whole.force[to] = own.force[from];
-    whole.carried[to] = own.carried[from];
-    whole.gap[to] = own.gap[from];
-    whole.rate[to] = own.rate[from];
-    whole.opening[to] = own.opening[from];
-    whole.landed[to] = own.landed[from];
-    whole.status[to] = own.status[from];
-    whole.watched[to] = own.watched[from];
-    if let Some(friction) = own.friction.get(from) {
-        whole.friction[to] = *friction;
-    }
-}
-
-fn forces_mut(motion: &mut Motion) -> [&mut Vec<f64>; 3] {
-    [
-        &mut motion.internal_force,
-        &mut motion.contact_force,
-        &mut motion.link_force,
-    ]
+/// Parts of an outer step of which the steps of all zones are whole numbers.
+fn common_multiple(steps: &[u32]) -> u32 {
+    steps.iter().fold(1, |all, &own| {
+        let (mut a, mut b) = (all, own);
+        while b != 0 {
+            (a, b) = (b, a % b);
+        }
+        all / a * own
+    })
 }
 
 impl Stepper for Whole {
-    /// One outer step.
+    /// One outer step, or one of the static stage.
     fn step(&mut self) -> Result<(), carom_dynamics::Error> {
+        if let Some(mut stage) = self.stage.0.take() {
+            if stage.is_over() {
+                self.leave_stage(*stage)?;
+            } else {
+                let outcome = stage.driver.step();
+                self.gather_stage(stage);
+                return outcome;
+            }
+        }
         self.zones.step()?;
         self.gather();
         self.report.notices = Notices::default();
@@ -407,6 +411,7 @@ impl Stepper for Whole {
 
     fn saved(&self) -> Result<Vec<u8>, carom_dynamics::Error> {
         let saved = Saved {
+            stage: (self.stage.0.as_ref()).map(|stage| stage.driver.state().clone()),
             zones: self.zones.state(),
             ledger: self.state.ledger.clone(),
             impacts: self.state.records.impacts.clone(),
@@ -418,7 +423,11 @@ impl Stepper for Whole {
 
     /// Those of all zones.
     fn costs(&self) -> Costs {
-        let mut costs = Costs::default();
+        let mut costs = match &self.stage {
+            (Some(stage), _) => stage.driver.costs(),
+            (None, over) => over.clone(),
+        };
+        costs.phases.links += self.zones.link_time;
         for driver in &self.zones.drivers {
             let own = driver.costs();
             costs.add(&own);
@@ -428,6 +437,9 @@ impl Stepper for Whole {
     }
 
     fn heed(&mut self, interrupt: &Interrupt) {
+        if let Some(stage) = &mut self.stage.0 {
+            stage.driver.heed(interrupt);
+        }
         for driver in &mut self.zones.drivers {
             driver.heed(interrupt);
         }

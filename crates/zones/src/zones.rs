@@ -1,15 +1,17 @@
 //! The drivers of all zones and the links between them: what they hold, their state.
 
+use std::time::Duration;
+
 use serde::{Deserialize, Serialize};
 
 use crate::cross_zone::{CrossZoneContacts, CrossZoneState};
 use crate::model::LinkKind;
 use crate::moves::Moves;
+use crate::response::{LinkSolver, OuterResponse};
 use crate::turning::{ByZone, TurningLinks};
 use carom_dynamics::Balance;
 use carom_dynamics::ContactReport;
-use carom_dynamics::condensed::Condensed;
-use carom_dynamics::linked::Origin;
+use carom_dynamics::linearised::Origin;
 use carom_dynamics::state::State;
 use carom_dynamics::{Control, Driver};
 use carom_system::Adaptive;
@@ -18,8 +20,8 @@ use carom_system::Adaptive;
 pub(crate) struct Kept {
     pub(crate) substeps: Vec<u32>,
     pub(crate) dt: f64,
-    pub(crate) factor: Option<Condensed>,
-    pub(crate) outer: Vec<f64>,
+    pub(crate) solver: Option<LinkSolver>,
+    pub(crate) outer: OuterResponse,
 }
 
 /// What the contacts of a zone did at one of its instants.
@@ -107,12 +109,12 @@ pub struct Zones {
     /// L one and two outer steps before the start of the step.
     pub(crate) earlier: [Vec<f64>; 2],
     /// H of the multipliers that a pass looks for.
-    pub(crate) factor: Option<Condensed>,
+    pub(crate) solver: Option<LinkSolver>,
     /// Where the zones were linearised for H, and whether H is to be made anew.
     pub(crate) origins: Vec<Origin>,
     pub(crate) stale: bool,
-    /// Part of H of the zones with one step, row-major: for pointwise multipliers.
-    pub(crate) outer: Vec<f64>,
+    /// Part of H of the zones with one step: for pointwise multipliers.
+    pub(crate) outer: OuterResponse,
     /// Both for other sizes and numbers of inner steps.
     pub(crate) kept: Vec<Kept>,
     pub(crate) saved: Vec<Option<State>>,
@@ -130,6 +132,8 @@ pub struct Zones {
     /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step; where links turn, the
     /// forces of their terms.
     pub(crate) mixes: Vec<[Vec<f64>; 3]>,
+    /// Time spent on making and solving the problem of the multipliers.
+    pub(crate) link_time: Duration,
     /// Moves of the multipliers in the passes so far.
     pub(crate) moves: Moves,
     /// Work of each link on both its sides in the outer step, and before it, J.
@@ -182,7 +186,7 @@ impl Zones {
     /// Bytes held for the condensed problem of the links.
     pub fn condensed_bytes(&self) -> usize {
         let rows = self.norms.len();
-        self.factor.as_ref().map_or(0, |factor| factor.bytes(rows))
+        self.solver.as_ref().map_or(0, |solver| solver.bytes(rows))
     }
 
     /// Work of each link on both its sides since the start, J: what it makes (positive) or takes.

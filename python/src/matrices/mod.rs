@@ -13,8 +13,8 @@ mod step;
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::Cholesky;
 use carom_laws::{Law, Status};
-use carom_nonsmooth::coulomb::{Coulomb, Slip};
-use carom_nonsmooth::interface::{Candidate, Interface};
+use carom_nonsmooth::ContactSolver;
+use carom_nonsmooth::coulomb::Slip;
 use carom_schemes::{LaursenChawla, Row, Scheme, StepMap, TimeScheme};
 use pyo3::prelude::*;
 
@@ -61,12 +61,10 @@ struct Point {
 /// Solvers of the interface problem, and D over its candidates.
 #[derive(Default)]
 struct Condensed {
-    interface: Interface,
-    coulomb: Coulomb,
+    solver: ContactSolver,
     /// The candidates of the last step, and their rows.
     candidates: Vec<u32>,
     rows: Vec<u32>,
-    data: Vec<Candidate>,
     d: Vec<f64>,
     version: u64,
 }

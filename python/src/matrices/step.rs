@@ -2,9 +2,9 @@
 
 use carom_dynamics::paired::told;
 use carom_laws::{Law, Level, Local, Status};
-use carom_nonsmooth::Compliance;
-use carom_nonsmooth::coulomb::{Posed, Slip, Tangential};
+use carom_nonsmooth::coulomb::{Slip, Tangential};
 use carom_nonsmooth::interface::Candidate;
+use carom_nonsmooth::{Compliance, Condensed as Posed};
 use carom_schemes::{Known, Row, StepMap};
 use pyo3::prelude::*;
 
@@ -69,7 +69,7 @@ impl MatrixRun {
     fn choose(&mut self, tolerance: f64) {
         let mut condensed = std::mem::take(&mut self.condensed);
         condensed.candidates.clear();
-        condensed.data.clear();
+        condensed.solver.candidates.clear();
         let map = self.map;
         for point in 0..self.points.len() {
             let row = self.rows.normal(point);
@@ -85,7 +85,7 @@ impl MatrixRun {
             }
             let [gap, rate] = constrained(&map, &law);
             condensed.candidates.push(point as u32);
-            condensed.data.push(Candidate {
+            condensed.solver.candidates.push(Candidate {
                 law,
                 local: Local {
                     area: 1.0,
@@ -186,27 +186,17 @@ impl MatrixRun {
         let friction: Vec<Tangential> = friction.collect();
         self.condensed = condensed;
         let Condensed {
-            interface,
-            coulomb,
-            data,
-            d,
-            version,
-            ..
+            solver, d, version, ..
         } = &mut self.condensed;
-        let d = Compliance::Dense(d);
-        if tangents == 0 {
-            let solved = interface.solve(data, (d, *version), [s[0], s[1]]);
-            return solved.map_err(|error| failed(&error));
-        }
-        let posed = Posed {
-            candidates: data,
-            friction: &friction,
-            tangents,
-            d,
+        solver.friction = friction;
+        let solved = solver.solve(Posed {
+            d: Compliance::Dense(d),
+            version: *version,
             s,
+            tangents,
             tolerance: TOLERANCE,
-        };
-        coulomb.solve(&posed).map_err(|error| failed(&error))
+        });
+        solved.map_err(|error| failed(&error))
     }
 
     /// Gives the points their forces and adds these to the motion.
@@ -217,13 +207,9 @@ impl MatrixRun {
         self.room.push.fill(0.0);
         for (k, &number) in condensed.candidates.iter().enumerate() {
             let point = &mut self.points[number as usize];
-            let (interface, coulomb) = (&condensed.interface, &condensed.coulomb);
-            if tangents == 0 {
-                (point.force, point.status) = (interface.forces[k], interface.statuses[k]);
-            } else {
-                (point.force, point.status) = (coulomb.forces[k], coulomb.statuses[k]);
-                (point.tangential, point.slip) = (coulomb.tangential[k], coulomb.slips[k]);
-            }
+            let found = condensed.solver.found(k);
+            (point.force, point.status) = (found.normal, found.status);
+            (point.tangential, point.slip) = (found.tangential, found.slip);
             let first = self.rows.normal(number as usize);
             let [t1, t2] = point.tangential;
             let forces = [point.force, t1, t2];

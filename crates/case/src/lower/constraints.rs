@@ -41,15 +41,6 @@ pub(super) fn lower(
             rows: vec![terms.flatten().collect()],
         });
     }
-    if let (Some(first), false) = (all.first(), context.plan.zones.is_empty()) {
-        let kind = match case.rigid_link.get(&first.name) {
-            Some(_) => "rigid-link",
-            None => "constraint",
-        };
-        let message = "rigid links and constraints are not available in zones";
-        let problem = Problem::new(format!("{kind}.{}", first.name), message);
-        problems.push(problem.accepted(["a case without zones"]));
-    }
     all
 }
 

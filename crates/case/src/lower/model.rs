@@ -209,7 +209,6 @@ fn check(
         discrete,
     };
     pieces::check(mesh, bodies, &joining, problems);
-    nonlinear::in_zones(context, problems);
     nonlinear::stresses_between(context, bodies, problems);
     explicit::check(context, bodies, problems);
     arlequin::contacts_outside(context, mesh, contacts, joints, problems);

@@ -76,29 +76,6 @@ pub(super) fn waiting(context: &Context, model: &Model, problems: &mut Problems)
     nodes.into_iter().collect()
 }
 
-/// Refuses in zones what their links do not know.
-pub(super) fn in_zones(context: &Context, problems: &mut Problems) {
-    let case = context.case;
-    let linked = case.arlequin.iter().next().is_some() || case.interface.iter().next().is_some();
-    if context.plan.zones.is_empty() || context.plan.steps_are_equal() && !linked {
-        return;
-    }
-    if case.time.stage.is_some() {
-        let message = "links between zones join velocities, and a static stage has no velocities";
-        let problem = Problem::new("time.static", message);
-        problems.push(problem.accepted(["no static stage", "a case without zones"]));
-    }
-    for (name, _) in case.support.iter().filter(|(_, s)| s.motion.is_some()) {
-        let message = "supports with a prescribed motion are not available in zones: links do not take account of it";
-        let problem = Problem::new(format!("support.{name}.move"), message);
-        problems.push(problem.accepted([
-            "a support that holds",
-            "an obstacle that moves",
-            "a case without zones",
-        ]));
-    }
-}
-
 /// Refuses, of a scheme that takes stresses between two states, bodies that have none.
 pub(super) fn stresses_between(context: &Context, bodies: &[ModelBody], problems: &mut Problems) {
     if context.case.time.is_static() {

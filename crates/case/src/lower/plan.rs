@@ -32,14 +32,6 @@ impl Plan {
             .iter()
             .position(|zone| zone.bodies.contains(&body))
     }
-
-    /// Whether all zones take the outer step.
-    pub(super) fn steps_are_equal(&self) -> bool {
-        self.zones
-            .iter()
-            .all(|zone| zone.substeps == 1 && zone.far == 1)
-    }
-
     /// Whether a body takes the outer step.
     pub(super) fn is_outer(&self, body: usize) -> bool {
         self.zone_of(body)

@@ -56,22 +56,14 @@ pub(super) fn lower(
     bolts
 }
 
-/// Refuses bolts without a static stage, and in zones.
+/// Refuses bolts without a static stage.
 fn is_tightened_in_time(context: &Context, bolt: &Bolt, problems: &mut Problems) -> Option<()> {
-    let table = [
-        Refusal {
-            is: context.case.time.stage.is_none(),
-            key: "",
-            message: "a bolt is tightened over a static stage, and the case has none",
-            accepted: &["static = { end = \"1 s\", steps = 4 } in [time]"],
-        },
-        Refusal {
-            is: !context.plan.zones.is_empty(),
-            key: "",
-            message: "bolts are not tightened in zones",
-            accepted: &["a case without zones"],
-        },
-    ];
+    let table = [Refusal {
+        is: context.case.time.stage.is_none(),
+        key: "",
+        message: "a bolt is tightened over a static stage, and the case has none",
+        accepted: &["static = { end = \"1 s\", steps = 4 } in [time]"],
+    }];
     problems.refuse_first((&bolt.path, None), &table)
 }
 

@@ -61,6 +61,9 @@ pub(super) fn by_zones(context: &Context, error: &carom_zones::Error) -> Problem
             let problem = Problem::new(path, error.to_string());
             problem.accepted(["nodes of one zone", "substeps = 1"])
         }
+        Error::Substeps { zone, found, .. } => {
+            Problem::new(format!("zone.{zone}"), error.to_string()).found(found)
+        }
         Error::LinkScheme { zone, scheme, .. } => {
             let given = context.plan.zones.iter().find(|own| own.name == *zone);
             let path = given.map_or("time.scheme", |own| &own.scheme_path);

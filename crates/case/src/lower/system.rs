@@ -143,6 +143,9 @@ fn of_zones(zoned: &Zoned, model: Model) -> Result<(Arc<System>, bool), carom_zo
     zoned.systems()?;
     match zoned.together()? {
         Some(system) => Ok((system, false)),
-        None => Ok((System::whole(model)?, true)),
+        None => {
+            zoned.check_stage()?;
+            Ok((System::whole(model)?, true))
+        }
     }
 }

@@ -74,7 +74,7 @@ fn zones(case: &Case, problems: &mut Problems) -> Vec<Zone> {
     zones
 }
 
-/// Inner steps of each zone: one of them takes the outer step, the others all the same number.
+/// Inner steps of each zone: one of them at least takes the outer step.
 fn substeps(case: &Case, zones: &mut [Zone], problems: &mut Problems) {
     let mut given: Vec<(String, &str, [u32; 2])> = Vec::new();
     for (name, zone) in case.zone.iter() {
@@ -95,7 +95,6 @@ fn substeps(case: &Case, zones: &mut [Zone], problems: &mut Problems) {
     }
     let names: Vec<&str> = case.zone.names().collect();
     let mut said = vec![false; zones.len()];
-    let mut many = None;
     for (path, name, [count, far]) in given {
         let Some(zone) = names.iter().position(|one| *one == name) else {
             let problem = Problem::new(path, "no zone of this name");
@@ -108,12 +107,6 @@ fn substeps(case: &Case, zones: &mut [Zone], problems: &mut Problems) {
             continue;
         }
         (zones[zone].substeps, zones[zone].far) = (count, far);
-        if count > 1 && *many.get_or_insert(count) != count {
-            let message =
-                "all zones with inner steps must have the same number of them per outer step";
-            let accepted = many.map(|many| format!("1 or {many}"));
-            problems.push(Problem::new(path, message).found(count).accepted(accepted));
-        }
     }
     if !zones.is_empty() && zones.iter().all(|zone| zone.substeps > 1) {
         let problem = Problem::new("zone", "no zone takes the outer step, `time.step`");

@@ -124,6 +124,59 @@ impl Driver {
         self.start()
     }
 
+    /// Begins the dynamics where a static stage ended that another driver took, with the velocity (m/s) and the force of links (N) there, one entry per unknown.
+    /// `end`: motion, contact points and records at the end of the stage, in the numbers of this system.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn begin_dynamics(
+        &mut self,
+        end: &State,
+        velocity: &[f64],
+        force: Vec<f64>,
+    ) -> Result<(), Error> {
+        let system = Arc::clone(&self.attempt.system);
+        self.contacts.size(&mut self.attempt, system.dt, system.dt);
+        self.parts.prepared = false;
+        self.leave_direct();
+        self.attempt.state.clone_from(end);
+        let state = &mut self.attempt.state;
+        state.control = Control::after_stage(system.dt, state.step, state.time);
+        for (i, v) in velocity.iter().enumerate() {
+            state.motion.v[i] = if system.fixed[i] { 0.0 } else { *v };
+        }
+        state.motion.link_force.clone_from(&force);
+        state.records.begin_dynamics();
+        self.links.force = force;
+        self.begin()?;
+        self.keep_for_direct_steps();
+        self.attempt.next.clone_from(&self.attempt.state);
+        self.attempt.show_followed(0.0);
+        self.tell(0.0);
+        Ok(())
+    }
+
+    /// Nodal forces of some contacts in the present configuration, N.
+    pub fn forces_of_contacts(&mut self, chosen: impl Fn(usize) -> bool) -> Vec<f64> {
+        self.contacts.pair_now(&mut self.attempt);
+        let (system, interface) = (&*self.attempt.system, &self.attempt.state.interface);
+        let mut forces = vec![0.0; system.unknowns()];
+        let pairing = &self.contacts.pairing;
+        for point in (0..system.points()).filter(|point| chosen(system.contact_of(*point))) {
+            let force = interface.force[point];
+            if force != 0.0 {
+                pairing.rows.add_force(point, force, &mut forces);
+            }
+            let tangential = interface.friction.get(point).into_iter().flatten();
+            for (rows, &t) in pairing.tangents.iter().zip(tangential) {
+                if t != 0.0 {
+                    rows.add_force(point, t, &mut forces);
+                }
+            }
+        }
+        forces
+    }
+
     /// Room for what the start of these steps computes.
     fn make_room_for_start(&mut self) {
         match self.is_direct() {

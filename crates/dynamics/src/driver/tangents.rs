@@ -4,6 +4,7 @@
 //! are laws in the rate, the velocity T v that they look at. T is that of the iteration, with the foot of the point there:
 //! in a closed contact a rigid rotation gives no slip.
 
+use carom_contact::Rows;
 use carom_contact::law::Level;
 
 use super::owners::{Attempt, Contacts};
@@ -186,23 +187,40 @@ impl Contacts {
         contact: usize,
         report: &mut ContactReport,
     ) {
+        let rubbing = Rubbing {
+            tangents: &self.pairing.tangents[..attempt.system.tangents()],
+            forces: &attempt.next.interface.friction,
+            slips: &|point| self.slips[point] == Slip::Slip,
+        };
+        let points = attempt.system.points_of(contact);
+        rubbing.add(self.active.within(points), report);
+    }
+}
+
+/// Friction in the points of contacts.
+pub struct Rubbing<'a> {
+    /// Rows of the tangents.
+    pub tangents: &'a [Rows],
+    /// Friction force of each point along them, N; empty without friction.
+    pub forces: &'a [[f64; 2]],
+    /// Whether a point slips.
+    pub slips: &'a dyn Fn(usize) -> bool,
+}
+
+impl Rubbing<'_> {
+    /// Writes the friction of some points into the report of their contact, and adds it to the resultant.
+    pub fn add(&self, points: impl Iterator<Item = usize>, report: &mut ContactReport) {
         let mut sum = [0.0; 3];
-        for point in self.active.within(attempt.system.points_of(contact)) {
-            let Some(t) = attempt.next.interface.friction.get(point) else {
+        for point in points {
+            let Some(t) = self.forces.get(point) else {
                 return;
             };
-            for (rows, t) in self
-                .pairing
-                .tangents
-                .iter()
-                .zip(t)
-                .take(attempt.system.tangents())
-            {
+            for (rows, t) in self.tangents.iter().zip(t) {
                 for (sum, direction) in sum.iter_mut().zip(rows.resultant(point)) {
                     *sum += t * direction;
                 }
             }
-            let slips = self.slips[point] == Slip::Slip && t != &[0.0; 2];
+            let slips = (self.slips)(point) && t != &[0.0; 2];
             report.slipping += usize::from(slips);
         }
         report.friction = sum.iter().map(|f| f * f).sum::<f64>().sqrt();

@@ -50,6 +50,7 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
         ("contact", phases.contact),
         ("friction", phases.friction),
         ("balance", phases.balance),
+        ("links", phases.links),
         ("output", results.totals.spent),
     ];
     let mut timings: BTreeMap<String, f64> = parts
@@ -63,9 +64,16 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
     {
         timings.remove("friction");
     }
+    if phases.links.is_zero() {
+        timings.remove("links");
+    }
     if results.last.step > 0 {
-        let steps =
-            phases.forces + phases.sweeps + phases.contact + phases.friction + phases.balance;
+        let steps = phases.forces
+            + phases.sweeps
+            + phases.contact
+            + phases.friction
+            + phases.balance
+            + phases.links;
         let per_step = steps.as_secs_f64() / results.last.step as f64;
         timings.insert("per step".to_owned(), per_step);
     }

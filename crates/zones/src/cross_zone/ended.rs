@@ -2,13 +2,27 @@
 
 use std::sync::Arc;
 
+use carom_contact::Pairing;
 use carom_contact::law::Status;
 use carom_dynamics::records::{Records, Step};
 use carom_dynamics::state::{InterfaceState, empty_state};
-use carom_dynamics::{Driver, contact_report, moment};
+use carom_dynamics::{Driver, Rubbing, contact_report, moment};
+use carom_nonsmooth::coulomb::Slip;
 use carom_schemes::step_map::Impulse;
 
 use super::{CrossZoneContacts, gather};
+use crate::stage::StageEnd;
+use crate::whole::take_point;
+use carom_system::System;
+
+/// Points that carry nothing.
+pub(super) fn without_forces(system: &System) -> InterfaceState {
+    let mut interface = empty_state(system).interface;
+    if system.tangents() > 0 {
+        interface.friction.resize(system.points(), [0.0; 2]);
+    }
+    interface
+}
 
 impl CrossZoneContacts {
     /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).
@@ -16,29 +30,42 @@ impl CrossZoneContacts {
         let before = self.state.interface.clone();
         let interface = &mut self.state.interface;
         interface.force.fill(0.0);
+        interface.friction.fill([0.0; 2]);
         interface.status.fill(Status::Open);
         interface.watched.fill(false);
-        for (k, &point) in self.candidates.iter().enumerate() {
+        let width = self.candidates.width();
+        for (k, &point) in self.candidates.points.iter().enumerate() {
             let point = point as usize;
-            interface.force[point] = self.forces[k];
-            interface.status[point] = self.interface.statuses[k];
+            let own = &self.candidates.forces[k * width..(k + 1) * width];
+            interface.force[point] = own[0];
+            if let Some(friction) = interface.friction.get_mut(point) {
+                let tangential = friction.iter_mut().zip(&own[1..]);
+                tangential.for_each(|(t, own)| *t = *own);
+            }
+            interface.status[point] = self.solver.found(k).status;
             interface.watched[point] = true;
         }
         interface.carried.clone_from(&interface.force);
         interface.count_flights(&before.flight, dt);
         for (sum, now) in self.state.works.iter_mut().zip(&self.now) {
-            *sum += now;
+            sum.iter_mut().zip(now).for_each(|(sum, now)| *sum += now);
         }
-        gather(drivers, &self.places, &mut self.end);
-        let ([u, v], [end, rate], rows) = (&self.start, &self.end, &self.pairing.rows);
-        for contact in 0..self.contacts.len() {
-            let part = self.captured(contact) * dt;
-            for point in self.system.points_of(contact) {
+        let geometry = &mut self.geometry;
+        gather(drivers, &geometry.places, &mut geometry.end);
+        let ([u, v], [end, rate]) = (&geometry.start, &geometry.end);
+        let rows = &geometry.pairing.rows;
+        for (number, contact) in self.system.contacts.iter().enumerate() {
+            let part = contact.law.get().capture() * dt;
+            for point in self.system.points_of(number) {
                 let paired = rows.product(point, u) + part * rows.product(point, v);
                 let way = rows.product(point, end) - paired;
                 let interface = &mut self.state.interface;
                 interface.gap[point] = rows.gap(point) + way;
                 interface.rate[point] = rows.product(point, rate);
+                if interface.force[point] != 0.0 {
+                    let (crush, gap) = (&mut interface.crush[point], interface.gap[point]);
+                    *crush = contact.law.crushed(*crush, gap);
+                }
             }
         }
         self.add_records(&before, [time, dt]);
@@ -48,56 +75,108 @@ impl CrossZoneContacts {
     fn add_records(&mut self, before: &InterfaceState, [end, dt]: [f64; 2]) {
         let system = Arc::clone(&self.system);
         for contact in 0..system.contacts.len() {
+            let points = || system.points_of(contact);
             let now = &self.state.interface;
-            let rows = &self.pairing.rows;
-            let mut report = contact_report(system.points_of(contact), rows, [before, now], dt);
+            let rows = &self.geometry.pairing.rows;
+            let mut report = contact_report(points(), rows, [before, now], dt);
+            let slips = |point: usize| self.slip(point) == Slip::Slip;
+            let rubbing = Rubbing {
+                tangents: &self.geometry.pairing.tangents[..system.tangents()],
+                forces: &now.friction,
+                slips: &slips,
+            };
+            rubbing.add(points(), &mut report);
+            report.friction_loss = -self.now[contact][1];
             report.moment = self.moment(contact);
-            let now = &self.state.interface;
+            let share = |point: usize| {
+                let (contact, place) = system.point(point);
+                let energy =
+                    |crush: f64| contact.points[place].share * contact.law.crush_energy(crush);
+                energy(self.state.interface.crush[point]) - energy(before.crush[point])
+            };
             let step = Step {
                 span: [end - dt, end],
                 dt,
                 impulse: Impulse::weights(0.0, 1.0),
-                forces: [&before.force, &now.force],
+                forces: [&before.force, &self.state.interface.force],
                 report: &report,
-                work: self.now[contact],
-                crushed: 0.0,
+                work: self.now[contact][0],
+                crushed: points().map(share).sum(),
                 jump: Default::default(),
             };
-            let velocities = [&self.start[1][..], &self.end[1]];
-            let points = system.points_of(contact);
+            let velocities = [&self.geometry.start[1][..], &self.geometry.end[1]];
             let of = (&*system, contact);
-            self.state.records.add(of, (&step, points), velocities);
+            self.state.records.add(of, (&step, points()), velocities);
             self.reports[contact] = report;
         }
     }
 
+    /// Status of friction that the last solve found of a point.
+    fn slip(&self, point: usize) -> Slip {
+        let place = self.candidates.points.binary_search(&(point as u32));
+        place.map_or(Slip::Open, |k| self.solver.found(k).slip)
+    }
+
     /// Forgets the forces and works so far.
     pub(crate) fn restart(&mut self, drivers: &[Driver]) {
-        self.state.interface = empty_state(&self.system).interface;
-        self.state.works.fill(0.0);
+        self.state.interface = without_forces(&self.system);
+        self.state.works.fill([0.0; 2]);
         self.state.records = Records::of(&self.system);
-        gather(drivers, &self.places, &mut self.start);
-        self.gather_frames(drivers);
-        self.pair((0.0, 0.0));
-        let (rows, interface) = (&self.pairing.rows, &mut self.state.interface);
+        self.geometry.gather_start(drivers);
+        self.geometry.pair(&self.system, (0.0, 0.0));
+        let (rows, interface) = (&self.geometry.pairing.rows, &mut self.state.interface);
         for point in 0..self.system.points() {
             interface.gap[point] = rows.gap(point);
-            interface.rate[point] = rows.product(point, &self.start[1]);
+            interface.rate[point] = rows.product(point, &self.geometry.start[1]);
         }
         for contact in 0..self.contacts.len() {
-            let (rows, now) = (&self.pairing.rows, &self.state.interface);
-            self.reports[contact] =
-                contact_report(self.system.points_of(contact), rows, [now; 2], 0.0);
+            let now = &self.state.interface;
+            let points = self.system.points_of(contact);
+            self.reports[contact] = contact_report(points, rows, [now; 2], 0.0);
         }
+    }
+
+    /// Takes the forces that a static stage ended with.
+    pub(crate) fn begin_dynamics(&mut self, drivers: &[Driver], end: &StageEnd) {
+        self.restart(drivers);
+        let own = &mut self.state.interface;
+        for (to, from) in end.between.iter().enumerate() {
+            take_point((own, to), (&end.whole.interface, *from));
+        }
+        for (record, &contact) in self.state.records.contacts.iter_mut().zip(&self.contacts) {
+            record.clone_from(&end.whole.records.contacts[contact]);
+        }
+        self.state.records.begin_dynamics();
+        let of = (&*self.system, &self.geometry, &self.compliance.rigid);
+        self.candidates.choose(of, &self.state.interface, 0.0);
+    }
+
+    /// Force of the candidates on a zone of so many unknowns, N.
+    pub(crate) fn pushed(&self, zone: usize, unknowns: usize) -> Vec<f64> {
+        let mut force = vec![0.0; unknowns];
+        for (row, terms) in &self.candidates.rows[zone] {
+            for &(unknown, c) in terms {
+                force[unknown as usize] += c * self.candidates.forces[*row as usize];
+            }
+        }
+        force
     }
 
     /// Moment of a contact about the point that it names, at the mean of the places at start and end of the step, N m.
     fn moment(&mut self, contact: usize) -> [f64; 3] {
-        let (rows, force) = (&self.pairing.rows, &self.state.interface.force);
-        let points = self.system.points_of(contact);
-        let forces = points.map(|point| (rows, point, force[point]));
-        let ends = [&self.start[0][..], &self.end[0]];
-        let at = (&self.frames[..], &ends[..]);
-        moment((&self.system, contact), forces, at, &mut self.nodal)
+        let interface = &self.state.interface;
+        let geometry = &mut self.geometry;
+        let Pairing { rows, tangents, .. } = &geometry.pairing;
+        let of_point = |point: usize| {
+            let normal = std::iter::once((rows, point, interface.force[point]));
+            let friction = tangents
+                .iter()
+                .zip(interface.friction.get(point).into_iter().flatten());
+            normal.chain(friction.map(move |(rows, t)| (rows, point, *t)))
+        };
+        let forces = self.system.points_of(contact).flat_map(of_point);
+        let ends = [&geometry.start[0][..], &geometry.end[0]];
+        let at = (&geometry.frames[..], &ends[..]);
+        moment((&self.system, contact), forces, at, &mut geometry.nodal)
     }
 }

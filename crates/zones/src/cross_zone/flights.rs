@@ -26,7 +26,7 @@ impl CrossZoneContacts {
         (rules, largest): (&Adaptive, f64),
         [dt, planned]: [f64; 2],
     ) -> f64 {
-        let (interface, rows) = (&self.state.interface, &self.pairing.rows);
+        let (interface, rows) = (&self.state.interface, &self.geometry.pairing.rows);
         let mut first = f64::INFINITY;
         for point in 0..self.system.points() {
             let (gap, flight) = (interface.gap[point], interface.flight[point]);
@@ -34,13 +34,15 @@ impl CrossZoneContacts {
             if !flies((gap, flight), tolerance, (rules, largest)) {
                 continue;
             }
-            let rate = rows.product(point, &self.start[1]);
+            let rate = rows.product(point, &self.geometry.start[1]);
             // without forces: of a candidate its own rate at the end, of others that of the motion
-            let candidate = self.candidates.binary_search(&(point as u32)).ok();
-            let free = candidate.and_then(|k| self.data.get(k)).map_or_else(
-                || self.ended(drivers, point),
-                |candidate| candidate.rate_free,
-            );
+            let candidate = self.candidates.points.binary_search(&(point as u32)).ok();
+            let free = candidate
+                .and_then(|k| self.solver.candidates.get(k))
+                .map_or_else(
+                    || self.ended(drivers, point),
+                    |candidate| candidate.rate_free,
+                );
             let end = gap + 0.5 * dt * (rate + free);
             let contact = self.system.contact_of(point);
             let law = self.system.contacts[contact].law.get();
@@ -56,9 +58,9 @@ impl CrossZoneContacts {
 
     /// Rate of a point at the end of the attempt, m/s.
     fn ended(&self, drivers: &[Driver], point: usize) -> f64 {
-        let (unknowns, coefficients) = self.pairing.rows.row(point);
+        let (unknowns, coefficients) = self.geometry.pairing.rows.row(point);
         let terms = unknowns.iter().zip(coefficients).map(|(&unknown, n)| {
-            let (zone, own) = self.homes[unknown as usize];
+            let (zone, own) = self.geometry.homes[unknown as usize];
             n * drivers[zone].ended().motion.v[own as usize]
         });
         terms.sum()

@@ -9,6 +9,7 @@ mod kinds;
 mod monolithic;
 mod schemes;
 mod schemes_apart;
+mod stages;
 mod turning;
 mod whole;
 mod zones_nonlinear;

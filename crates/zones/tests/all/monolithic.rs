@@ -286,10 +286,13 @@ impl Problem {
         Some([motion, error(&outer.a, &exact.acceleration).max(forces)])
     }
 
-    /// Errors of one step from random motions towards the wall, relative to the largest entry: of motion, and of forces and
+    /// Errors of one step from random motions towards the wall, with H or without it, relative to the largest entry: of motion, and of forces and
     /// accelerations.
-    fn compare(&self, seed: u64) -> [f64; 2] {
+    fn compare(&self, seed: u64, without_matrix: bool) -> [f64; 2] {
         let mut zones = self.zones();
+        if without_matrix {
+            zones.solve_without_matrix().unwrap();
+        }
         zones.restart(&self.motions(seed)).unwrap();
         let mut state = zones.state();
         // touches the wall
@@ -560,11 +563,13 @@ fn condensed_step_is_that_of_the_whole_system() {
             for (contact, motion, force) in [(false, 1e-14, 1e-11), (true, 5e-12, 1e-8)] {
                 // the node in contact and the next one are outside the overlap
                 let problem = Problem::random((seed, 2), kind, substeps, contact);
-                let found = problem.compare(seed);
-                assert!(
-                    found[0] < motion && found[1] < force,
-                    "{seed} {kind:?} {substeps} {contact}: {found:?}"
-                );
+                for without_matrix in [false, true] {
+                    let found = problem.compare(seed, without_matrix);
+                    assert!(
+                        found[0] < motion && found[1] < force,
+                        "{seed} {kind:?} {substeps} {contact} {without_matrix}: {found:?}"
+                    );
+                }
             }
         }
     }
