@@ -51,10 +51,11 @@ const COLUMNS: [(&str, &str, f64); 6] = [
 ];
 
 /// Examples of the verification crate that print a table, and its file.
-const EXAMPLES: [(&str, &str); 3] = [
+const EXAMPLES: [(&str, &str); 4] = [
     ("long_run", "long-run.md"),
     ("rings", "rings.md"),
     ("combinations", "combinations.md"),
+    ("pairs", "pairs.md"),
 ];
 
 /// Writes `docs/tables` and the picture; what went wrong, if anything.

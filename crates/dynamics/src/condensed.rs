@@ -118,6 +118,7 @@ impl Joined {
                 }
             }
         }
+        hold_empty_rows(answers, [unknowns, count], &mut matrix);
         let groups = dense_numbers(&groups);
         let factor = QuasiDefinite::new(&matrix, &groups, unknowns)
             .map_err(|cause| Error::Redundant { rows: count, cause })?;
@@ -210,6 +211,19 @@ fn add_diagonal(answer: &Answer, masses: &[f64], unknowns: usize, matrix: &mut C
                 matrix.add(i, j, -answer.scale * c * d / mass);
             }
         }
+    }
+}
+
+/// Gives rows that act on nothing that moves a multiplier of nothing: supports hold them already.
+fn hold_empty_rows(answers: &[Answer], [unknowns, count]: [usize; 2], matrix: &mut Csr) {
+    let mut acts = vec![false; count];
+    for answer in answers {
+        for (row, terms) in &answer.rows {
+            acts[*row as usize] |= answer.terms(terms).any(|(_, c)| c != 0.0);
+        }
+    }
+    for row in (0..count).filter(|row| !acts[*row]) {
+        matrix.add(unknowns + row, unknowns + row, -1.0);
     }
 }
 

@@ -268,7 +268,7 @@ pub(crate) enum Built {
 }
 
 impl Built {
-    fn zoned(zoned: Zoned) -> Result<Built, Error> {
+    pub(crate) fn zoned(zoned: Zoned) -> Result<Built, Error> {
         if let Some(system) = zoned.together()? {
             return Ok(Built::One(system, None));
         }
@@ -371,7 +371,7 @@ fn plates(
 }
 
 /// A flight of some steps, which adapt themselves to its end.
-fn fly(model: &mut Model) {
+pub(crate) fn fly(model: &mut Model) {
     let speed = -model.bodies[0].velocity[1];
     model.bodies[0].displacement[1] = 2.3 * model.dt * speed;
     model.adaptive = Some(Adaptive {
@@ -383,7 +383,7 @@ fn fly(model: &mut Model) {
 }
 
 /// The upper block has its nodes in contact, those of loads, and six modes.
-fn reduced(model: &mut Model) -> Result<(), Error> {
+pub(crate) fn reduced(model: &mut Model) -> Result<(), Error> {
     let keep = Keep {
         modes: 6,
         ..Keep::default()
@@ -392,13 +392,13 @@ fn reduced(model: &mut Model) -> Result<(), Error> {
 }
 
 /// The lowest modes of the upper block are damped.
-fn damped(model: &mut Model) -> Result<(), Error> {
+pub(crate) fn damped(model: &mut Model) -> Result<(), Error> {
     damp(model, 0, &Ratios::Each(vec![0.02, 0.1, 0.05]))?;
     Ok(())
 }
 
 /// Each block is a zone; the lower one takes `substeps` steps in one of the upper.
-fn in_contact(model: Model, substeps: u32) -> Zoned {
+pub(crate) fn in_contact(model: Model, substeps: u32) -> Zoned {
     let zone = |body: usize, substeps| {
         ModelZone::new(
             model.bodies[body].spec.name.clone(),
@@ -415,7 +415,7 @@ fn in_contact(model: Model, substeps: u32) -> Zoned {
 }
 
 /// Static steps under the weight, then a traction that presses the upper block down for some steps.
-fn preloaded(model: &mut Model) -> Result<(), Error> {
+pub(crate) fn preloaded(model: &mut Model) -> Result<(), Error> {
     let held = [true, true, false];
     model.supports = vec![
         support(&model.mesh, "upper.left", held)?,
@@ -436,7 +436,7 @@ fn preloaded(model: &mut Model) -> Result<(), Error> {
 }
 
 /// The upper half of the upper block is a zone of its own; the rest takes `substeps` steps in one of it.
-fn zones(mut model: Model, substeps: u32) -> Result<Zoned, Error> {
+pub(crate) fn zones(mut model: Model, substeps: u32) -> Result<Zoned, Error> {
     let mesh = &model.mesh;
     let above = |cell: &ElementId| {
         let nodes = mesh.element_nodes(*cell);
@@ -507,6 +507,7 @@ pub(crate) fn reason(error: &Error) -> Option<String> {
         Error::Dynamics(error) => reason_of_run(error),
         Error::Zones(error) => reason_of_zones(error),
         Error::System(error) => reason_of(error),
+        Error::Reduction(error) => Some(format!("reduced body: {error}")),
         _ => None,
     }
 }
@@ -529,9 +530,13 @@ fn reason_of_run(error: &carom_dynamics::Error) -> Option<String> {
     use carom_dynamics::Error as E;
     match error {
         E::System(error) => reason_of(error),
+        E::Body(carom_bodies::Error::NoBetween { .. }) => Some(NO_BETWEEN.to_owned()),
         _ => None,
     }
 }
+
+/// Why a material that dissipates has no scheme that conserves energy by its stress.
+const NO_BETWEEN: &str = "the scheme conserves energy by a stress between the two ends of a step, which a material that dissipates does not have";
 
 fn reason_of(error: &carom_system::Error) -> Option<String> {
     use carom_system::Error as E;
@@ -548,9 +553,7 @@ fn reason_of(error: &carom_system::Error) -> Option<String> {
         E::Projection { .. } => {
             "the projection at closure needs velocity, acceleration and force in balance at the end of the step: only Newmark's scheme has this balance"
         }
-        E::Body(carom_bodies::Error::NoBetween { .. }) => {
-            "the scheme conserves energy by a stress between the two ends of a step, which a material that dissipates does not have"
-        }
+        E::Body(carom_bodies::Error::NoBetween { .. }) => NO_BETWEEN,
         E::ConsistentMass { .. } => {
             "explicit schemes divide by the mass of each node, and a reduced body has a matrix of mass"
         }

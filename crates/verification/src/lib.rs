@@ -115,6 +115,7 @@ mod one_point_shells;
 mod orbiting_mass;
 mod order;
 mod order_features;
+pub mod pairs;
 mod quadrature;
 mod random_field;
 mod reduced_bodies;
@@ -258,6 +259,7 @@ macro_rules! cases {
             orbiting_mass
             order
             order_features
+            pairs
             plastic_wave
             plates
             pounding

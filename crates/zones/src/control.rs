@@ -59,6 +59,7 @@ impl Zones {
     fn try_size(&mut self, dt: f64, next: f64) -> Result<(), Error> {
         self.take_size(dt, next)?;
         self.first_cut = f64::INFINITY;
+        self.products[1] = 0;
         for (k, driver) in self.drivers.iter().enumerate() {
             if self.substeps[k] > 1
                 && let Some(saved) = &mut self.saved[k]

@@ -28,8 +28,6 @@ pub(crate) struct IteratedLinks {
     change: Vec<f64>,
     /// Velocities and ways of the rows of a zone.
     of_zone: [Vec<f64>; 2],
-    /// Products with H so far.
-    pub(crate) products: u64,
 }
 
 impl IteratedLinks {
@@ -61,7 +59,6 @@ impl IteratedLinks {
             image: vector(),
             change: vector(),
             of_zone: [vector(), vector()],
-            products: 0,
         })
     }
 
@@ -70,7 +67,7 @@ impl IteratedLinks {
         self.preconditioner.bytes() + 6 * 8 * rows
     }
 
-    /// ΔL of what the rows miss, in place, until no row misses more than `goal` (m/s) times its norm.
+    /// ΔL of what the rows miss, in place, until no row misses more than `goal` (m/s) times its norm; returns the products with H that this took.
     ///
     /// # Errors
     /// An effective matrix that is not positive definite.
@@ -79,10 +76,10 @@ impl IteratedLinks {
         (drivers, rows): (&mut [Driver], &[Vec<(u32, LinkRow)>]),
         (r, norms): (&mut [f64], &[f64]),
         goal: f64,
-    ) -> Result<(), Error> {
+    ) -> Result<u64, Error> {
         let holds = |r: &[f64]| r.iter().zip(norms).all(|(r, norm)| r.abs() <= goal * norm);
         self.change.fill(0.0);
-        let mut before = 0.0;
+        let (mut before, mut products) = (0.0, 0);
         for iteration in 0..MOST {
             if holds(r) {
                 break;
@@ -96,6 +93,7 @@ impl IteratedLinks {
             }
             before = now;
             self.multiply(drivers, rows)?;
+            products += 1;
             let curvature = dot(&self.direction, &self.image);
             if curvature <= 0.0 || curvature.is_nan() {
                 break;
@@ -107,7 +105,7 @@ impl IteratedLinks {
             }
         }
         r.copy_from_slice(&self.change);
-        Ok(())
+        Ok(products)
     }
 
     /// H times the direction.
@@ -117,7 +115,6 @@ impl IteratedLinks {
         rows: &[Vec<(u32, LinkRow)>],
     ) -> Result<(), Error> {
         self.image.fill(0.0);
-        self.products += 1;
         for (k, driver) in drivers.iter_mut().enumerate() {
             let [ends, ways] = &mut self.of_zone;
             let count = rows[k].len();

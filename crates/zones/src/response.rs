@@ -17,8 +17,9 @@ use carom_dynamics::linearised::{Answered, Growth, LinearZone, Steps};
 use carom_dynamics::operator::assembled;
 use carom_system::{LinkRow, System};
 
-/// Rows above which H of unequal steps is not made: a column costs as much as the steps of all zones, and iterations as few tens of columns in each
-/// outer step.
+/// Rows above which H of unequal steps is not made at once. A column costs as much as a product with H, and iterations take some ten of these in
+/// each outer step. H of more rows, up to [`DENSE`], is made once as many products were: no run then costs more than twice what the
+/// better choice would have.
 const FEW: usize = 300;
 
 /// How `H ΔL = r` is solved.
@@ -104,7 +105,11 @@ impl Zones {
         }
         let n = self.norms.len();
         let equal = self.substeps.iter().all(|m| *m == 1);
-        match (n, n > if equal { DENSE } else { FEW }) {
+        let few = match equal || self.products[0] >= n as u64 {
+            true => DENSE,
+            false => FEW,
+        };
+        match (n, n > few) {
             (0, _) => Ok(()),
             (_, false) => self.factorise_dense(),
             (_, true) => self.solve_without_matrix(),
@@ -137,10 +142,20 @@ impl Zones {
             }
         }
         self.outer = OuterResponse::Matrix(outer);
+        hold_empty_rows(n, &mut h);
         let factor = DenseCholesky::new(n, &h);
         let factor = factor.map_err(|cause| carom_dynamics::Error::Redundant { rows: n, cause })?;
         self.solver = Some(LinkSolver::Factor(Condensed::Dense(factor)));
         Ok(())
+    }
+
+    /// Makes H from the next step on where as many products were made as it has columns.
+    pub(crate) fn judge_solver(&mut self) {
+        let n = self.norms.len();
+        let iterates = matches!(self.solver, Some(LinkSolver::Iterated(_)));
+        if iterates && n <= DENSE && self.products[0] >= n as u64 {
+            self.stale = true;
+        }
     }
 
     /// ΔL of what the rows miss, in place.
@@ -157,7 +172,8 @@ impl Zones {
             }
             Some(LinkSolver::Iterated(iterated)) => {
                 let zones = (&mut self.drivers[..], &self.rows[..]);
-                iterated.solve(zones, (&mut self.defect, &self.norms), goal)
+                let solved = iterated.solve(zones, (&mut self.defect, &self.norms), goal);
+                solved.map(|products| self.products[1] += products)
             }
         };
         self.link_time += begin.elapsed();
@@ -199,6 +215,16 @@ impl Zones {
             }
         }
         Ok(())
+    }
+}
+
+/// Gives rows that act on nothing that moves a multiplier of nothing: supports hold them already.
+pub(crate) fn hold_empty_rows(count: usize, h: &mut [f64]) {
+    for row in 0..count {
+        let diagonal = &mut h[row * count + row];
+        if *diagonal == 0.0 {
+            *diagonal = 1.0;
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::cross_zone::CrossZoneContacts;
 use crate::error::Error;
 use crate::model::Zoned;
 use crate::moves::Moves;
-use crate::response::{OuterResponse, answer};
+use crate::response::{OuterResponse, answer, hold_empty_rows};
 use crate::stage::StageEnd;
 use crate::turning::{ByZone, TurningLinks};
 use crate::zones::Zones;
@@ -93,6 +93,7 @@ impl Zones {
             samples: Vec::new(),
             passes: 0,
             all_passes: 0,
+            products: [0; 2],
             defect: vec![0.0; count],
             worst: 0.0,
             worst_row: 0,
@@ -365,6 +366,7 @@ impl MassLinks<'_> {
                 }
             }
         }
+        hold_empty_rows(count, &mut matrix);
         let factor = DenseCholesky::new(count, &matrix);
         let factor =
             factor.map_err(|cause| carom_dynamics::Error::Redundant { rows: count, cause })?;

@@ -60,12 +60,14 @@ impl Zones {
         self.step += 1;
         self.sizes = [self.dt, self.sizes[0]];
         self.all_passes += self.passes as u64;
+        self.products[0] += self.products[1];
         let [before, first] = &mut self.earlier;
         let [old, new] = &mut self.multipliers;
         std::mem::swap(before, first);
         before.copy_from_slice(old);
         old.copy_from_slice(new);
         self.judge_origins();
+        self.judge_solver();
     }
 
     /// Gives the zones back the states that inner steps have changed, and the forces of links before the outer step.

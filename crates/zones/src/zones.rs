@@ -66,6 +66,8 @@ pub struct ZonesState {
     pub zones: Vec<State>,
     /// Passes over all outer steps, for the results.
     pub passes: u64,
+    /// Products with H in all outer steps.
+    pub products: u64,
 }
 
 /// The drivers of all zones, and the links between them.
@@ -122,6 +124,8 @@ pub struct Zones {
     /// Passes of the last step, over all steps, and factorisations of H.
     pub(crate) passes: usize,
     pub(crate) all_passes: u64,
+    /// Products with H in all steps, and in the one under way.
+    pub(crate) products: [u64; 2],
     pub(crate) defect: Vec<f64>,
     /// Largest defect of a row after the last pass, m/s.
     pub(crate) worst: f64,
@@ -183,6 +187,11 @@ impl Zones {
         self.all_passes
     }
 
+    /// Products with the condensed problem of the links in all outer steps, where it is solved by iterations.
+    pub fn link_products(&self) -> u64 {
+        self.products[0]
+    }
+
     /// Bytes held for the condensed problem of the links.
     pub fn condensed_bytes(&self) -> usize {
         let rows = self.norms.len();
@@ -216,6 +225,7 @@ impl Zones {
             between: self.between.as_ref().map(|between| between.state.clone()),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
             passes: self.all_passes,
+            products: self.products[0],
         }
     }
 
@@ -251,6 +261,8 @@ impl Zones {
     /// Goes on from a state, which must be of the same zones.
     pub fn resume(&mut self, state: &ZonesState) {
         (self.step, self.time, self.all_passes) = (state.step, state.time, state.passes);
+        self.products[0] = state.products;
+        self.judge_solver();
         (self.control, self.sizes) = (state.control, state.sizes);
         self.multipliers[0].clone_from(&state.multipliers);
         self.earlier.clone_from(&state.earlier);
