@@ -566,6 +566,7 @@ fn reason_of(error: &carom_system::Error) -> Option<String> {
             return Some(format!("{of}: {why}"));
         }
         E::MasslessContact { cause, .. } => return Some(format!("massless nodes: {cause}")),
+        E::Massless { cause, .. } => return Some(format!("massless nodes: {cause}")),
         _ => return None,
     };
     Some(words.to_string())

@@ -140,7 +140,15 @@ impl Zoned {
 fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
     let of_model = &zoned.model.contacts[contact];
     if let Integration::Weak { .. } = of_model.integration {
-        return Some("the weak form needs equal steps; take node or mortar");
+        return Some(
+            "its multipliers ask for M⁻¹ of both sides at the end of one step, and the steps of the zones end apart; take node or mortar",
+        );
+    }
+    if of_model.massless {
+        return Some(
+            "nodes without mass stay in contact by a law in the gap at the end of each step of their zone, and this contact has one at the end of the \
+             outer step alone; take nodes with mass",
+        );
     }
     let plain = |zone: usize| {
         let map = zoned.zones[zone].scheme.get().step_map(zoned.model.dt);
@@ -149,7 +157,8 @@ fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
     match zoned.zones_of(contact).into_iter().all(plain) {
         true => None,
         false => Some(
-            "with unequal steps both zones need a scheme whose contact force is a mean over the step: theta or energy-momentum",
+            "a force P that stands over the outer step DT gives a zone of steps h the impulse DT P in schemes whose contact force is a mean over the \
+             step, theta and energy-momentum, and DT P + c h (P - P_before) in others: action and reaction would differ; take one of these, or equal steps",
         ),
     }
 }
