@@ -41,6 +41,7 @@ cases! {
     "two-bars-newmark":,
     "arlequin-bars":,
     "mass-on-stop":,
+    "hertz-points":,
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,
     "pounding":,

@@ -7,6 +7,7 @@ mod compliance;
 pub mod coulomb;
 pub mod interface;
 mod lumped;
+mod tangents;
 mod weak;
 mod work;
 

@@ -98,6 +98,7 @@ mod glued_substeps;
 mod glued_turning;
 mod hertz_cylinder;
 mod hertz_impact;
+mod hertz_point;
 mod hertz_spheres;
 mod interface_problems;
 mod invariance;
@@ -243,6 +244,7 @@ macro_rules! cases {
             glued_substeps
             hertz_cylinder
             hertz_impact
+            hertz_point
             hertz_spheres
             interface_problems
             invariance

@@ -114,6 +114,13 @@ impl Points {
         Ok(())
     }
 
+    /// Gives the stop made last another law.
+    pub(crate) fn law_of_stop(&mut self, law: Law) {
+        if let Some(stop) = self.contacts.last_mut() {
+            stop.law = law;
+        }
+    }
+
     /// Friction of the stop made last, and the radii (m) of the sections of its ends.
     pub(crate) fn rub(&mut self, friction: f64, radii: [f64; 2]) {
         if let Some(stop) = self.contacts.last_mut() {

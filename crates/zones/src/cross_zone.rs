@@ -323,6 +323,7 @@ impl CrossZoneContacts {
                     dt,
                     tolerance: system.tolerance_at(point),
                     crush: 0.0,
+                    at: [0.0; 2],
                 },
                 rate_free: self.rates[i] - of_forces.sum::<f64>(),
                 status: match self.forces[i] != 0.0 {

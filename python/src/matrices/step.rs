@@ -97,6 +97,7 @@ impl MatrixRun {
                     dt: map.moves,
                     tolerance,
                     crush: given.crush,
+                    at: [placed, moving],
                 },
                 rate_free: self.quantity(row, &rate, true),
                 status: given.status,
@@ -177,6 +178,7 @@ impl MatrixRun {
             }
             Tangential {
                 mu: given.friction,
+                sliding: None,
                 free,
                 slip: given.slip,
                 force: given.tangential,

@@ -132,7 +132,7 @@ pub struct Stop {
     #[serde(default)]
     pub adhesion: Adhesion,
     /// A law of contacts in place of the spring and the dashpot of the stop, whose keys are then not needed and do not matter:
-    /// `displacement`, `velocity`, `restitution` or `stop`. For comparisons.
+    /// `displacement`, `velocity`, `restitution`, `hertz`, `hunt-crossley` or `stop`.
     pub law: Option<GivenLaw>,
     /// Friction across the axis while the stop is closed. Default: none.
     pub friction: Option<Friction>,

@@ -212,6 +212,7 @@ impl Contacts {
             Tangential {
                 mu: attempt.system.contacts[attempt.system.contact_of(at)].friction,
                 free: q,
+                sliding: None,
                 slip: self.slips[at],
                 force: attempt.next.interface.friction[at],
                 pressed: attempt.next.interface.force[at],

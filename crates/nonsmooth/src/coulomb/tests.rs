@@ -495,6 +495,7 @@ fn disc_in_a_corner(mu: f64, free: [f64; 3], offsets: [f64; 2]) -> FrictionProbl
         slip: Slip::Stick,
         force: [0.0; 2],
         pressed: 0.0,
+        sliding: None,
     };
     FrictionProblem {
         step: 0,
