@@ -42,6 +42,7 @@ cases! {
     "arlequin-bars":,
     "mass-on-stop":,
     "hertz-points":,
+    "stick-slip":,
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,
     "pounding":,

@@ -152,6 +152,7 @@ mod sliding_block;
 mod sliding_work;
 mod spinning_bar;
 mod spinning_ring;
+mod static_friction;
 mod static_links;
 mod stick_slip;
 mod supports;
@@ -297,6 +298,7 @@ macro_rules! cases {
             sliding_work
             spinning_bar
             spinning_ring
+            static_friction
             static_links
             stick_slip
             supports

@@ -146,7 +146,7 @@ fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
     if of_model.law.get().level() != Level::Rate {
         return Some("take a law in the rate, or equal steps");
     }
-    if of_model.friction > 0.0 {
+    if of_model.friction.acts() {
         return Some("friction needs equal steps");
     }
     if let Integration::Weak { .. } = of_model.integration {

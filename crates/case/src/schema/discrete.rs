@@ -3,14 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_laws::{Adhesion, Crush, CurvePoint, GivenLaw};
+use carom_laws::{Adhesion, Crush, CurvePoint, Friction, GivenLaw};
 use carom_quantities::{
     Clearance, Coordinate, Damping, MomentOfInertia, SignedForce, Stiffness, Vector, Velocity,
     Weight,
 };
 
 use super::body::Initial;
-use super::contact::Friction;
 use super::obstacle::{NormalVector, Obstacle};
 
 /// A point mass: at a node of its own, or at each node of a group.

@@ -209,10 +209,11 @@ impl Contacts {
                 let step = factor * free(number);
                 *q = self.slid(attempt, at, k, (without, time)) + step;
             }
+            let (mu, slides) = self.coefficients(attempt, at);
             Tangential {
-                mu: attempt.system.contacts[attempt.system.contact_of(at)].friction,
+                mu,
+                sliding: (slides < mu).then_some(slides),
                 free: q,
-                sliding: None,
                 slip: self.slips[at],
                 force: attempt.next.interface.friction[at],
                 pressed: attempt.next.interface.force[at],

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::FrictionLaw;
+use super::law::FrictionLaw;
 
 /// Coulomb: one coefficient μ of sticking and sliding.
 ///

@@ -9,9 +9,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 mod coulomb;
+mod law;
 mod static_kinetic;
 
 pub use coulomb::Coulomb;
+pub use law::FrictionLaw;
 pub use static_kinetic::StaticKinetic;
 
 /// The list of friction laws: each with what the case file says of it.
@@ -43,17 +45,13 @@ friction_laws! {
     StaticKinetic,
 }
 
-/// What a friction law must answer.
-pub trait FrictionLaw {
-    /// Name as in the case file.
-    fn name(&self) -> &'static str;
-    /// μ up to which a point sticks.
-    fn sticks(&self) -> f64;
-    /// μ of a point that slides, at most [`FrictionLaw::sticks`]. `rate`: how fast it slides at the start of the step, m/s.
-    fn slides(&self, rate: f64) -> f64;
-}
-
 impl Friction {
+    /// μ of points that slide fast, where it is below that of points that stick.
+    pub fn kinetic(&self) -> Option<f64> {
+        let law = self.get();
+        Some(law.slides(f64::INFINITY)).filter(|kinetic| *kinetic < law.sticks())
+    }
+
     /// Whether there is any.
     pub fn acts(&self) -> bool {
         self.get().sticks() > 0.0

@@ -2,9 +2,9 @@
 
 use carom_quantities::Speed;
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
-use super::FrictionLaw;
+use super::law::FrictionLaw;
 
 /// Static and kinetic friction: a point sticks with |t| <= μ_s P and slides with |t| = μ P,
 /// ```text
@@ -39,11 +39,18 @@ pub struct StaticKinetic {
         extend("minimum" = 0.0)
     )]
     pub kinetic: f64,
-    /// v_c.
+    /// v_c in m/s.
     #[schemars(
+        with = "Option<Speed>",
         description = "Speed v over which the coefficient falls from the static to the kinetic one: it is kinetic + (static - kinetic) exp(-speed/v), with the speed of the sliding at the start of the step. Default: it falls as soon as the point slides."
     )]
-    pub decay: Option<Speed>,
+    #[serde(default, deserialize_with = "speed")]
+    pub decay: Option<f64>,
+}
+
+/// A speed that is given, m/s.
+fn speed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    Speed::si(deserializer).map(Some)
 }
 
 impl FrictionLaw for StaticKinetic {
@@ -56,7 +63,7 @@ impl FrictionLaw for StaticKinetic {
     }
 
     fn slides(&self, rate: f64) -> f64 {
-        let left = self.decay.map_or(0.0, |speed| (-rate / speed.0).exp());
+        let left = self.decay.map_or(0.0, |speed| (-rate / speed).exp());
         self.kinetic + (self.at_rest - self.kinetic) * left
     }
 }
@@ -74,7 +81,7 @@ mod tests {
         };
         assert_eq!(law(None).slides(0.0), 0.3);
         assert_eq!(law(None).slides(10.0), 0.3);
-        let decays = law(Some(Speed(2.0)));
+        let decays = law(Some(2.0));
         assert_eq!(decays.slides(0.0), 0.5);
         // by e over each 2 m/s; sums of two numbers, rounded once or twice
         for speeds in [1.0, 3.0] {
