@@ -214,7 +214,7 @@ fn model(run: &Run, n: usize) -> Result<Model, Box<dyn Error>> {
     let contact = ModelContact {
         sliding: Sliding::Finite,
         integration,
-        friction: 0.3,
+        friction: 0.3.into(),
         ..ModelContact::new("between", secondary, target, law)
     };
     let held = Support {

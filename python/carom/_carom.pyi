@@ -74,7 +74,7 @@ class MatrixRun:
     def __init__(
         self,
         matrices: tuple[int, _Matrix, _Matrix | None, _Matrix],
-        contacts: tuple[list[list[tuple[int, float]]], list[float], list[str], list[float]],
+        contacts: tuple[list[list[tuple[int, float]]], list[float], list[str], list[str]],
         scheme: tuple[str, float],
         start: tuple[list[float], list[float], list[float]],
     ) -> None: ...

@@ -5,8 +5,9 @@ For models of other programs: reduced by modes, read from Matrix Market, or asse
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -53,7 +54,8 @@ class Matrices:
         C: damping, N s/m. Default: none.
         u, v: displacement (m) and velocity (m/s) at the start. Default: at rest.
         load: p in N, an array, or a function of time. Default: none.
-        friction: coefficient of Coulomb's friction, one for all rows or one each. Default: none.
+        friction: coefficient of Coulomb's friction, one for all rows or one each, or a friction law as a case has it, such as
+            ``{"static-kinetic": {"static": 0.5, "kinetic": 0.3}}``, for all rows. Default: none.
         tangents: with friction the derivatives of the sliding by the unknowns: one row for each row of N in the plane, two in space, those of a
             point one after another. The friction is at most `friction` times the normal force, and opposes the sliding.
 
@@ -86,7 +88,7 @@ class Matrices:
         u: ArrayLike | None = None,
         v: ArrayLike | None = None,
         load: Load | None = None,
-        friction: float | ArrayLike | None = None,
+        friction: float | ArrayLike | Mapping[str, Any] | None = None,
         tangents: Any = None,
     ) -> None:
         from scipy import sparse
@@ -111,14 +113,12 @@ class Matrices:
         self._load, self._n, self._dt = load, n, dt
         start = [np.zeros(n) if given is None else np.asarray(given, dtype=float) for given in (u, v)]
         terms = [[normal] for normal in _terms(self._rows)]
-        coefficients = np.zeros(self._gap.size)
+        rubbing = [json.dumps({"coulomb": 0.0})] * self._gap.size
         self._tangents = 0
         if (friction is None) != (tangents is None):
             raise ValueError("friction takes `friction` and `tangents`")
         if friction is not None:
-            coefficients = np.array(np.broadcast_to(np.asarray(friction, dtype=float), coefficients.shape))
-            if not (np.isfinite(coefficients) & (coefficients >= 0.0)).all():
-                raise ValueError("friction accepts finite numbers of zero or more")
+            rubbing = _friction(friction, self._gap.size)
             sliding = sparse.csr_array(np.atleast_2d(tangents) if not hasattr(tangents, "tocsr") else tangents)
             points = self._gap.size
             if sliding.shape not in ((points, n), (2 * points, n)):
@@ -128,7 +128,7 @@ class Matrices:
                 terms[k // self._tangents].append(tangent)
         self._raw = _carom.MatrixRun(
             (n, _csr(mass), None if damping is None else _csr(damping), _csr(stiffness)),
-            ([row for rows in terms for row in rows], self._gap.tolist(), [one._json for one in laws], coefficients.tolist()),
+            ([row for rows in terms for row in rows], self._gap.tolist(), [one._json for one in laws], rubbing),
             (scheme._json, dt),
             (start[0].tolist(), start[1].tolist(), self._at(0.0).tolist()),
         )
@@ -169,6 +169,16 @@ def _matrix(given: Any) -> Any:
             raise FileNotFoundError(f"{os.fspath(given)}: no such file of a matrix")
         given = io.mmread(given)
     return sparse.csr_array(given).astype(float)
+
+
+def _friction(given: float | ArrayLike | Mapping[str, Any], points: int) -> list[str]:
+    """The friction law of each point, as a case has it."""
+    if isinstance(given, Mapping):
+        return [json.dumps(given)] * points
+    coefficients = np.broadcast_to(np.asarray(given, dtype=float), (points,))
+    if not (np.isfinite(coefficients) & (coefficients >= 0.0)).all():
+        raise ValueError("friction accepts finite numbers of zero or more")
+    return [json.dumps({"coulomb": float(one)}) for one in coefficients]
 
 
 def _terms(rows: Any) -> list[list[tuple[int, float]]]:

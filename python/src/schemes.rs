@@ -1,6 +1,6 @@
 //! Time schemes and contact laws as plain numbers.
 
-use carom_laws::{Defaults, GivenLaw, Law, Level, Local, Status};
+use carom_laws::{Defaults, Friction, GivenLaw, Law, Level, Local, Status};
 use carom_schemes::{Row, Scheme};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -24,6 +24,18 @@ pub(crate) fn read_law(json: &str) -> PyResult<Law> {
     let given: GivenLaw = serde_json::from_str(json).map_err(|error| wrong(&error))?;
     let law = given.law(&Defaults::default());
     law.map_err(|error| PyValueError::new_err(error.to_string()))
+}
+
+/// A friction law as the case file has it.
+pub(crate) fn read_friction(json: &str) -> PyResult<Friction> {
+    let friction: Friction = serde_json::from_str(json).map_err(|error| wrong(&error))?;
+    let law = friction.get();
+    match law.slides(0.0).max(law.slides(f64::INFINITY)) > law.sticks() {
+        true => Err(PyValueError::new_err(
+            "friction: a point that slides has more of it than one that sticks",
+        )),
+        false => Ok(friction),
+    }
 }
 
 /// Name, order, and the rows of the map of a step of `dt` (s), each with the factors of u, v, a, memory, x and c.

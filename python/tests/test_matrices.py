@@ -230,6 +230,25 @@ def test_a_block_slides_until_friction_stops_it():
     assert history.friction[-1, 0] == pytest.approx(np.zeros(2), abs=1e-9)
 
 
+def test_friction_is_larger_at_rest_than_in_motion():
+    """1 kg under 10 N is pushed with 0.4 and 0.6 of its weight: below and above the coefficient of sticking, 0.5; it then slides with
+    (0.6 - 0.3) g, of which the first step begins at rest. Round-off."""
+    law = {"static-kinetic": {"static": 0.5, "kinetic": 0.3}}
+    for push, speed in [(4.0, 0.0), (6.0, 3.0 * 0.1)]:
+        model = carom.Matrices(
+            np.eye(2), np.zeros((2, 2)), [[0.0, 1.0]], [0.0], law=Law("velocity", **NOW), scheme=Scheme("theta", theta=0.5), dt=1e-3,
+            load=[push, -10.0], friction=law, tangents=[[1.0, 0.0]],
+        )
+        model.run(100)
+        assert model.velocity == pytest.approx([speed, 0.0], rel=1e-10, abs=1e-14)
+    rising = {"static-kinetic": {"static": 0.3, "kinetic": 0.5}}
+    with pytest.raises(ValueError, match="more of it than one that sticks"):
+        carom.Matrices(
+            np.eye(2), np.zeros((2, 2)), [[0.0, 1.0]], [0.0], law=Law("velocity", **NOW), scheme=Scheme("theta", theta=0.5), dt=1e-3,
+            friction=rising, tangents=[[1.0, 0.0]],
+        )
+
+
 def test_a_force_below_friction_moves_nothing():
     """Pushed with 0.9 and 1.1 times the friction."""
     moved = []

@@ -1,6 +1,6 @@
 //! Rules between several values of a case, which the schema cannot say; still without a look at any mesh.
 
-use carom_laws::{Capture, GivenLaw, Reading};
+use carom_laws::{Capture, Friction, GivenLaw, Reading};
 use carom_quantities::units::with_article;
 
 use crate::error::Problem;
@@ -26,6 +26,7 @@ pub(crate) fn check(case: &Case) -> Vec<Problem> {
             check_vectors(&format!("stop.{name}"), obstacle, &mut problems);
         }
     }
+    check_frictions(case, &mut problems);
     for (name, load) in case.load.iter() {
         let everywhere = load.acceleration.is_some() || load.base_acceleration.is_some();
         if let Some(on) = load.on.as_ref().filter(|_| everywhere) {
@@ -214,6 +215,35 @@ fn check_r(path: &str, contact: &Contact, problems: &mut Vec<Problem>) {
         };
         let path = format!("{path}.integration.quadrature.{first}");
         problems.push(Problem::new(path, message).accepted(used));
+    }
+}
+
+/// Friction that is larger in motion than at rest.
+fn check_frictions(case: &Case, problems: &mut Vec<Problem>) {
+    let contacts = case.contact.iter();
+    let contacts = contacts.map(|(name, given)| (format!("contact.{name}"), given.friction));
+    let stops = case.stop.iter();
+    let stops = stops.map(|(name, given)| (format!("stop.{name}"), given.friction));
+    let general = case.general_contact.iter();
+    let general = general.flat_map(|given| {
+        let pairs = given.pairs.iter().enumerate();
+        let pairs = pairs.map(|(k, pair)| (format!("general-contact.pairs[{k}]"), pair.friction));
+        std::iter::once(("general-contact".to_owned(), given.friction)).chain(pairs)
+    });
+    let rises = |friction: &Friction| {
+        let law = friction.get();
+        law.slides(0.0).max(law.slides(f64::INFINITY)) > law.sticks()
+    };
+    for (path, friction) in contacts.chain(stops).chain(general) {
+        if let Some(friction) = friction.filter(rises) {
+            let path = format!("{path}.friction.{}", friction.get().name());
+            let problem = Problem::new(
+                path,
+                "a point that slides has more friction than one that sticks",
+            );
+            problems
+                .push(problem.accepted(["a coefficient of sliding of at most that of sticking"]));
+        }
     }
 }
 

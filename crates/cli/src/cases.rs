@@ -41,6 +41,8 @@ cases! {
     "two-bars-newmark":,
     "arlequin-bars":,
     "mass-on-stop":,
+    "hertz-points":,
+    "stick-slip":,
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,
     "pounding":,

@@ -53,9 +53,11 @@ pub fn print_contact(name: &str, contact: &Contact) {
         );
     }
     if let Some(friction) = contact.friction {
+        let kinetic = friction.kinetic.map(|mu| format!(", of sliding {mu}"));
         out!(
-            "    friction coefficient {}, largest friction force {}",
+            "    friction coefficient {}{}, largest friction force {}",
             friction.coefficient,
+            kinetic.unwrap_or_default(),
             quantity(friction.peak_force, "N")
         );
     }

@@ -23,7 +23,7 @@ mod search;
 mod sight;
 
 pub use carom_laws as law;
-pub use carom_laws::Law;
+pub use carom_laws::{Friction, Law};
 pub use contact::{Contact, Integration, Sliding, Target};
 pub use initial::{Initial, Penetration};
 pub use mortar::{Basis, Mortar};

@@ -41,6 +41,20 @@ pub struct Local {
     /// What a law with memory keeps of the point, m: the largest penetration so far.
     #[serde(default)]
     pub crush: f64,
+    /// Gap (m) and gap rate (m/s) at which a law that is not linear gives its relation.
+    #[serde(default)]
+    pub at: [f64; 2],
+}
+
+impl Local {
+    /// The same, with relations about this gap (m) and this rate (m/s).
+    #[must_use]
+    pub fn about(&self, gap: f64, rate: f64) -> Local {
+        Local {
+            at: [gap, rate],
+            ..*self
+        }
+    }
 }
 
 /// Which quantity at the end of the step a law constrains.
@@ -120,11 +134,21 @@ pub trait ContactLaw {
         false
     }
     /// What holds in a point of this status other than open. Only the offset may change from step to step: the factors
-    /// belong to a matrix that is kept while the statuses stand.
+    /// belong to a matrix that is kept while the statuses stand. Of a law that is not linear it is the tangent about [`Local::at`].
     fn relation(&self, status: Status, local: &Local) -> Relation;
     /// The status that the end state asks for. `reversals`: how often the status of this point has turned within the
     /// step so far.
     fn status(&self, now: Status, end: &End, local: &Local, reversals: u32) -> Status;
+    /// Whether the relation of each status is linear. That of a law that is not is renewed about the gap and the rate that it leads to,
+    /// until these stand: Newton's method.
+    fn is_linear(&self) -> bool {
+        true
+    }
+    /// Penetration at which a contact holds this energy (J), m, of laws whose stiffness grows with it: explicit steps are bounded by
+    /// the stiffness there.
+    fn depth(&self, _energy: f64) -> f64 {
+        0.0
+    }
     /// Whether velocity and acceleration are projected when points of this law close.
     fn projects(&self) -> bool {
         false
@@ -133,9 +157,14 @@ pub trait ContactLaw {
     fn has_weak_form(&self) -> bool {
         false
     }
-    /// Whether it gives the force of each point as a continuous function of one quantity there, so that points may be as
+    /// Whether it gives the force of each point as a continuous function of gap and rate there, so that points may be as
     /// many as one likes. A damper beside a spring is none: its force jumps where the gap closes.
     fn is_function(&self) -> bool {
+        false
+    }
+    /// Whether it is that of the contact as a whole, whose points share its force: the penetration then stands for what the bodies do not
+    /// resolve.
+    fn is_of_the_whole(&self) -> bool {
         false
     }
     /// The largest penetration of a point that has carried a force, in m, after a step that ended with the gap `gap` in

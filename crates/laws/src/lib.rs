@@ -2,11 +2,13 @@
 //!
 //! A law says (i) which points it watches, (ii) what holds at the end of the step in a point of given status,
 //! `gap_factor g₊ + rate_factor ġ₊ + compliance P + offset = 0`, or P = 0 if open, and (iii) which status the end state
-//! asks for.
+//! asks for. Where a law is no line, the relation is its tangent about the present gap and rate, and is renewed until these stand.
 //! The sign fields are these decisions: S_g for a law in the gap, S_d and S_v for a law in the rate. With the status
-//! frozen all is linear; the interface problem repeats until no status changes.
+//! and the tangents frozen all is linear; the interface problem repeats until no status changes.
 //!
 //! Signs: gap positive when open, gap rate positive when opening, force positive in compression.
+//!
+//! Friction laws ([`Friction`]) say what part of the normal force a point carries along the surface.
 //!
 //! Adding a law: one file, and its lines here.
 
@@ -30,6 +32,11 @@ macro_rules! laws {
             Restitution GivenRestitution,
             /// A given stiffness: p = k max(0, -g), minus C times the gap rate while the gap is closed.
             Penalty Penalty,
+            /// A Hertz point, for the contact as a whole: force k times the penetration to the power 3/2, or another one.
+            Hertz Hertz,
+            /// The law of Hunt and Crossley, for the contact as a whole: that of a Hertz point times 1 + c times the rate of the
+            /// penetration, which loses energy without a jump of the force.
+            HuntCrossley GivenHuntCrossley,
             /// A stop of engineering structures, for the contact as a whole: a clearance, a curve of force over penetration, a
             /// dashpot.
             Stop GivenStop,
@@ -43,6 +50,9 @@ mod curve;
 mod damped;
 mod defaults;
 mod displacement;
+mod friction;
+mod hertz;
+mod hunt_crossley;
 mod law;
 mod list;
 mod penalty;
@@ -56,6 +66,9 @@ pub use curve::{Curve, CurveError, MOST_CURVE_POINTS};
 pub use damped::{Adhesion, Damped, GivenDamped};
 pub use defaults::{Defaults, Side};
 pub use displacement::Displacement;
+pub use friction::{Coulomb, Friction, FrictionLaw, StaticKinetic};
+pub use hertz::Hertz;
+pub use hunt_crossley::{GivenHuntCrossley, HuntCrossley};
 pub use law::{ContactLaw, End, Level, Local, Relation, Status};
 pub use list::{GivenLaw, Law};
 pub use penalty::Penalty;

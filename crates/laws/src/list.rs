@@ -108,6 +108,7 @@ mod tests {
         dt: 1.0,
         tolerance: 0.0,
         crush: 0.0,
+        at: [0.0; 2],
     };
 
     fn end(gap: f64, rate: f64, force: f64) -> End {

@@ -213,6 +213,10 @@ impl ContactLaw for Stop {
         }
     }
 
+    fn is_of_the_whole(&self) -> bool {
+        true
+    }
+
     fn is_function(&self) -> bool {
         self.damping == 0.0
     }

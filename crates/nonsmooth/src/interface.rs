@@ -5,7 +5,8 @@
 //! reads `(D P)_i + κ_i P_i = -q_i`: a symmetric positive definite system over the closed points. Statuses follow the
 //! solution until none changes (semi-smooth Newton, primal-dual active set). Where blocks of changes do not reduce the
 //! number of points that disagree, one point at a time changes, the last first: for laws without corner this ends on
-//! every positive definite D (Murty; Júdice and Pires 1994, block principal pivoting).
+//! every positive definite D (Murty; Júdice and Pires 1994, block principal pivoting). Laws that are not linear give their tangents,
+//! which are renewed around this (`renewed.rs`).
 //!
 //! The equations are solved by a dense factor, or, where D is the product of sparse rows or not known, by conjugate gradients.
 
@@ -14,6 +15,7 @@ use carom_algebra::dense::DenseCholesky;
 use carom_laws::{End, Relation, Status};
 
 use crate::Compliance;
+use crate::tangents::{Tangents, are_linear};
 use iterated::Iterated;
 use serde::{Deserialize, Serialize};
 use thiserror::Error as ThisError;
@@ -139,20 +141,37 @@ pub struct Interface {
     changes: Vec<u32>,
     /// Tolerance of iterations beyond their own.
     rough: f64,
+    tangents: Tangents,
 }
 
 impl Interface {
-    /// Solves for the forces and statuses.
+    /// Solves for the forces and statuses. Relations of laws that are not linear are renewed until they stand.
     ///
     /// `compliance`: D over the candidates, and its version; `s`: [s_g, s_v], the factors of x in the gap and
     /// in the rate.
     pub fn solve(
         &mut self,
         candidates: &[Candidate],
-        (d, version): (Compliance, u64),
+        compliance: (Compliance, u64),
         s: [f64; 2],
     ) -> Result<(), Failure> {
-        let compliance = (d, version);
+        if are_linear(candidates) {
+            return self.settle(candidates, compliance, s);
+        }
+        let mut tangents = std::mem::take(&mut self.tangents);
+        tangents.begin(candidates);
+        let solved = self.renew(&mut tangents, compliance, s);
+        self.tangents = tangents;
+        solved
+    }
+
+    /// Solves for the forces and statuses, with the relations of the candidates as they are.
+    fn settle(
+        &mut self,
+        candidates: &[Candidate],
+        compliance: (Compliance, u64),
+        s: [f64; 2],
+    ) -> Result<(), Failure> {
         let n = candidates.len();
         self.statuses.clear();
         // a corner is found anew in each step, from a closed point that opens
@@ -524,5 +543,6 @@ fn end(
 
 mod candidate;
 mod iterated;
+mod renewed;
 #[cfg(test)]
 mod tests;

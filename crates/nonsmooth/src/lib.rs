@@ -8,6 +8,7 @@ mod contact_solver;
 pub mod coulomb;
 pub mod interface;
 mod lumped;
+mod tangents;
 mod weak;
 mod work;
 

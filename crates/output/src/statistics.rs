@@ -233,7 +233,8 @@ pub fn takes_energy(system: &System, contact: usize) -> bool {
         Law::Displacement(_) => false,
         Law::Velocity(_) => bodies.all(|body| is_stiff(&system.bodies[*body])),
         Law::Restitution(law) => law.coefficient < 1.0,
-        Law::Damped(_) | Law::Compliance(_) | Law::Penalty(_) | Law::Stop(_) => true,
+        // a spring or a damper of its own
+        _ => true,
     }
 }
 

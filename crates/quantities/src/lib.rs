@@ -18,6 +18,6 @@ pub use nearest::nearest;
 pub use quantity::{
     Acceleration, Angle, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density,
     Duration, Energy, Force, Frequency, Length, LineMass, Modulus, MomentOfInertia, Rate,
-    SecondMoment, SignedForce, SignedMoment, SignedStress, Stiffness, Stress, SurfaceDamping,
-    SurfaceStiffness, Vector, Velocity, Weight,
+    SecondMoment, SignedForce, SignedMoment, SignedStress, Speed, Stiffness, Stress,
+    SurfaceDamping, SurfaceStiffness, Vector, Velocity, Weight,
 };

@@ -184,6 +184,14 @@ quantity!(
     "A velocity, m/s."
 );
 quantity!(
+    Speed,
+    "velocity",
+    "m/s",
+    "10 m/s",
+    POSITIVE,
+    "A speed greater than zero, m/s."
+);
+quantity!(
     Acceleration,
     "acceleration",
     "m/s^2",
@@ -353,7 +361,7 @@ macro_rules! into_si {
     };
 }
 
-into_si!(Energy SecondMoment Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
+into_si!(Energy SecondMoment Frequency MomentOfInertia Angle SignedForce SignedMoment Weight Stiffness Coordinate Length Area Duration Density Modulus Velocity Speed Acceleration SurfaceStiffness SurfaceDamping Clearance Force Damping Stress SignedStress Delay Rate AngularVelocity);
 
 #[cfg(test)]
 mod tests {
@@ -385,6 +393,7 @@ mod tests {
         reads::<super::LineMass>();
         reads::<super::Modulus>();
         reads::<super::Velocity>();
+        reads::<super::Speed>();
         reads::<super::Acceleration>();
         reads::<super::SurfaceStiffness>();
         reads::<super::SurfaceDamping>();

@@ -139,7 +139,7 @@ fn holds(system: &System, assembly: &Assembly) -> Vec<Hold> {
         if let Target::Rigid(obstacle) = &contact.target
             && contact.bodies.iter().any(&has)
         {
-            of_obstacle(obstacle, contact.friction > 0.0, &mut holds);
+            of_obstacle(obstacle, contact.friction.acts(), &mut holds);
         }
     }
     holds

@@ -96,7 +96,7 @@ impl System {
             return Some("the weak form needs one scheme for all bodies; take node or mortar");
         }
         let slides_alike = ways().all(|x| Some(x) == ways().next());
-        if self.contacts[number].friction > 0.0 && level != Level::Rate && !slides_alike {
+        if self.contacts[number].friction.acts() && level != Level::Rate && !slides_alike {
             return Some("friction needs a law in the rate here");
         }
         let contact = &self.contacts[number];

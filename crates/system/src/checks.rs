@@ -150,7 +150,7 @@ impl System {
         let weak = |contact: &Contact| matches!(contact.integration, Integration::Weak { .. });
         for contact in &self.contacts {
             let refused = || Refused::Integration(contact.name.clone());
-            if weak(contact) && contact.friction > 0.0 {
+            if weak(contact) && contact.friction.acts() {
                 return refuse(
                     refused(),
                     "the weak form with signs at Gauss points has no friction; take node or mortar",

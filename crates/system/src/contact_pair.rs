@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, Range};
 
-use carom_contact::Contact;
+use carom_contact::{Contact, Friction};
 use carom_mesh::Face;
 
 use crate::contacts::{is_of_many, renumbered, sides, touching};
@@ -34,8 +34,8 @@ pub struct ContactPair {
     pub tolerance: f64,
     /// Time that a wave needs to pass over the smallest element at a side, of the slower side, s.
     pub passage: f64,
-    /// Coefficient of Coulomb's friction; zero without.
-    pub friction: f64,
+    /// Friction.
+    pub friction: Friction,
     /// Duration of a flight that ends an impact, s; none where waves and steps tell.
     pub merge_within: Option<f64>,
     /// What the moment of its forces is about; none where none is reported.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use carom_algebra::unknowns::Kind;
 use carom_arlequin::Row;
 use carom_bodies::{BodySpec, DiscreteKind, DiscreteSpec, Inertia, MassKind, Reduction, Rotations};
-use carom_contact::{Initial, Integration, Law, Obstacle, Parts, Sliding};
+use carom_contact::{Friction, Initial, Integration, Law, Obstacle, Parts, Sliding};
 use carom_mesh::{Mesh, Surface};
 use carom_schemes::Scheme;
 
@@ -368,8 +368,8 @@ pub struct ModelContact {
     pub integration: Integration,
     /// Whether the nodes of both surfaces give their mass to the other nodes of their bodies.
     pub massless: bool,
-    /// Coefficient of Coulomb's friction; zero for none.
-    pub friction: f64,
+    /// Friction.
+    pub friction: Friction,
     /// What is done about penetrations at the start.
     pub initial: Initial,
     /// Largest penetration that is a contact, m: points see only faces turned against them and not further away inside than
@@ -401,7 +401,7 @@ impl ModelContact {
             sliding: Sliding::Small,
             integration: Integration::Node,
             massless: false,
-            friction: 0.0,
+            friction: Friction::default(),
             initial: Initial::Keep,
             depth: None,
             near_only: false,
@@ -456,5 +456,5 @@ pub(crate) fn damped(body: &ModelBody) -> bool {
 
 pub(crate) fn needs_newton(contact: &ModelContact) -> bool {
     let moves = matches!(&contact.primary, ModelTarget::Rigid(obstacle) if obstacle.motion.moves());
-    contact.friction > 0.0 || moves || matches!(contact.integration, Integration::Mortar { .. })
+    contact.friction.acts() || moves || matches!(contact.integration, Integration::Mortar { .. })
 }

@@ -17,7 +17,8 @@ impl System {
     ///
     /// ω² is at most the largest eigenvalue of an element, plus that of the stiffness `Σ k_i n_i n_iᵀ` of compliant contact
     /// laws against the lumped mass, which is bounded by the largest row sum of `sqrt(k_i k_j) n_i · M⁻¹ n_j` over points
-    /// i, j, paired as at the start. Points that face nothing then count with the lightest node of the system.
+    /// i, j, paired as at the start. Points that face nothing then count with the lightest node of the system. The stiffness of a law
+    /// that grows with the penetration is that where the contact would hold the kinetic energy of the start; loads may press it deeper.
     ///
     /// Rayleigh damping acts with the velocity that is known before the forces, and shortens the step: with Ω the critical ω dt
     /// without damping and c = α + β ω² a mode is stable for `(2 ω dt/Ω)² + 2 c dt ≤ 4` (from the characteristic polynomial
@@ -123,6 +124,8 @@ impl System {
 
     /// Bound of the eigenvalues of the stiffness of a contact against the lumped mass, 1/s².
     fn contact_bound(&self, contact: &Contact) -> f64 {
+        let moving = self.mass.lumped.iter().zip(&self.initial.velocity);
+        let energy = 0.5 * moving.map(|(m, v)| m * v * v).sum::<f64>();
         let stiffness: Vec<f64> = contact
             .points
             .iter()
@@ -132,7 +135,9 @@ impl System {
                     share: point.share,
                     ..Local::default()
                 };
-                let relation = contact.law.get().relation(Status::Closed, &local);
+                let law = contact.law.get();
+                let local = local.about(-law.depth(energy), 0.0);
+                let relation = law.relation(Status::Closed, &local);
                 if relation.compliance > 0.0 {
                     relation.gap / relation.compliance
                 } else {

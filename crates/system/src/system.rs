@@ -165,7 +165,7 @@ impl System {
 
     /// Tangents of a contact point in problems with friction: none where no contact has any.
     pub fn tangents(&self) -> usize {
-        match self.contacts.iter().any(|contact| contact.friction > 0.0) {
+        match self.contacts.iter().any(|contact| contact.friction.acts()) {
             true => self.dim.saturating_sub(1),
             false => 0,
         }
@@ -182,7 +182,7 @@ impl System {
         let mortar = matches!(contact.integration, Integration::Mortar { .. });
         let compliant = contact.law.get().level() == Level::GapAndRate;
         let round = matches!(contact.target, Target::Rigid(_)) && contact.turns();
-        finite || mortar || contact.moves() || contact.friction > 0.0 || compliant && round
+        finite || mortar || contact.moves() || contact.friction.acts() || compliant && round
     }
 
     /// The number of the scheme of the secondary side of a contact.

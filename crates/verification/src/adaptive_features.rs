@@ -40,7 +40,7 @@ fn model(feature: Feature, scheme: Scheme, law: Law, flight: f64) -> Result<Mode
     upper.spec.material = feature.material();
     upper.displacement[1] = -flight * model.dt * upper.velocity[1];
     match feature {
-        Feature::Friction => model.contacts[0].friction = 0.3,
+        Feature::Friction => model.contacts[0].friction = 0.3.into(),
         Feature::Mortar => {
             model.contacts[0].integration = Integration::Mortar {
                 basis: Basis::Standard,

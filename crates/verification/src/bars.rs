@@ -243,7 +243,7 @@ impl Run {
         Ok(Model {
             contacts: vec![ModelContact {
                 massless: self.massless,
-                friction: 0.0,
+                friction: 0.0.into(),
                 initial: Initial::Keep,
                 depth: None,
                 moment_about: None,

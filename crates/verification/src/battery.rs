@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use carom_contact::Law;
 use carom_contact::law::{
-    Adhesion, Capture, Crush, Curve, Damped, Level, Penalty, Restitution, Stop,
+    Adhesion, Capture, Crush, Curve, Damped, Hertz, HuntCrossley, Level, Penalty, Restitution, Stop,
 };
 use carom_dynamics::{Model, Scheme, State, System};
 use carom_materials::Elastic;
@@ -47,6 +47,15 @@ pub(crate) fn laws(
         coefficient: 0.5,
         capture: Capture::Half,
     };
+    // as stiff as the penalty at a penetration of h/36; at 5 m/s the damper has half the force of the spring
+    let hertz = Hertz {
+        stiffness: 2.0 * material.young * area / size.powf(1.5),
+        exponent: 1.5,
+    };
+    let hunt_crossley = HuntCrossley {
+        spring: hertz,
+        damping: 0.1,
+    };
     Ok(vec![
         ("displacement", DISPLACEMENT),
         ("displacement, projection", PROJECTION),
@@ -60,6 +69,8 @@ pub(crate) fn laws(
         ("compliance", compliance(material, 10.0, Capture::Half)),
         ("restitution", Law::Restitution(restitution)),
         ("penalty", Law::Penalty(penalty)),
+        ("hertz", Law::Hertz(hertz)),
+        ("hunt-crossley", Law::HuntCrossley(hunt_crossley)),
         ("stop", Law::Stop(stop)),
         ("stop, crushed", Law::Stop(crushed)),
     ])

@@ -86,7 +86,7 @@ fn over_plane(
     beam.velocity = velocity_of;
     let own = around(&mesh, "beam", &beam)?;
     let floor = ModelContact {
-        friction,
+        friction: friction.into(),
         ..contact(own, plane(2, 1.0), velocity(Capture::Half))
     };
     Ok(Model {

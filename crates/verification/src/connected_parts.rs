@@ -63,7 +63,7 @@ fn struck(n: usize, steps: usize) -> Result<[usize; 2], Error> {
     let primary = ModelTarget::Surface(surface(&mesh, "block.top", &block)?);
     let mut blow = contact(secondary, primary, CLOSED);
     blow.sliding = Sliding::Finite;
-    blow.friction = 0.3;
+    blow.friction = 0.3.into();
     let mut driver = Driver::new(crate::witness::system(Model {
         contacts: vec![blow],
         supports: vec![support(&mesh, "block.bottom", [true; 3])?],
@@ -103,7 +103,7 @@ fn carried(steps: usize) -> Result<(usize, usize, f64), Error> {
     };
     let foot = surface(&mesh, "block.bottom", &block)?;
     let mut rubbing = contact(foot, ModelTarget::Rigid(belt), CLOSED);
-    rubbing.friction = 0.3;
+    rubbing.friction = 0.3.into();
     let press = Load {
         name: "press".into(),
         surface: surface(&mesh, "block.top", &block)?,

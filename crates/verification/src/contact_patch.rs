@@ -213,7 +213,7 @@ impl Patch {
         let below = surface(&mesh, "upper.bottom", &bodies[0])?;
         let above = ModelTarget::Surface(surface(&mesh, "lower.top", &bodies[1])?);
         let mut joint = contact(below, above, self.law);
-        (joint.integration, joint.friction) = (self.integration, self.friction);
+        (joint.integration, joint.friction) = (self.integration, self.friction.into());
         let (end, steps) = STAGE;
         let mut nonlinear = Nonlinear {
             motions,

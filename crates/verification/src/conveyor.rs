@@ -51,7 +51,7 @@ fn newton(mesh: Mesh, belt: Obstacle) -> Result<Driver, Error> {
     };
     let foot = surface(&mesh, "crate.bottom", &crate_)?;
     let mut rubbing = contact(foot, ModelTarget::Rigid(belt), NOW);
-    rubbing.friction = MU;
+    rubbing.friction = MU.into();
     Ok(Driver::new(crate::witness::system(Model {
         contacts: vec![rubbing],
         gravity: [0.0, -GRAVITY, 0.0],

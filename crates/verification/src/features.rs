@@ -224,7 +224,7 @@ impl Feature {
             body.spec.material = self.material();
         }
         match self {
-            Feature::Friction => model.contacts[0].friction = 0.3,
+            Feature::Friction => model.contacts[0].friction = 0.3.into(),
             Feature::Mortar => {
                 model.contacts[0].integration = Integration::Mortar {
                     basis: Basis::Standard,

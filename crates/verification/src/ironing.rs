@@ -83,7 +83,7 @@ fn model(file: &str, friction: f64, integration: Integration, slides: u64) -> Re
         ModelTarget::Surface(foot),
         DISPLACEMENT,
     );
-    (iron.integration, iron.friction) = (integration, friction);
+    (iron.integration, iron.friction) = (integration, friction.into());
     let steps = DOWN + slides;
     let (pressed, end) = (DOWN as f64, steps as f64);
     let way = 10.0 * MM * slides as f64 / ALONG as f64;

@@ -98,6 +98,7 @@ mod glued_substeps;
 mod glued_turning;
 mod hertz_cylinder;
 mod hertz_impact;
+mod hertz_point;
 mod hertz_spheres;
 mod interface_problems;
 mod invariance;
@@ -152,6 +153,7 @@ mod sliding_block;
 mod sliding_work;
 mod spinning_bar;
 mod spinning_ring;
+mod static_friction;
 mod static_links;
 mod stick_slip;
 mod supports;
@@ -244,6 +246,7 @@ macro_rules! cases {
             glued_substeps
             hertz_cylinder
             hertz_impact
+            hertz_point
             hertz_spheres
             interface_problems
             invariance
@@ -297,6 +300,7 @@ macro_rules! cases {
             sliding_work
             spinning_bar
             spinning_ring
+            static_friction
             static_links
             stick_slip
             supports

@@ -117,7 +117,7 @@ impl Pair {
 
     fn add(self, feature: Feature, model: &mut Model) -> Result<(), Error> {
         match feature {
-            Feature::Friction => model.contacts[0].friction = 0.3,
+            Feature::Friction => model.contacts[0].friction = 0.3.into(),
             Feature::Mortar => {
                 model.contacts[0].integration = Integration::Mortar {
                     basis: Basis::Standard,

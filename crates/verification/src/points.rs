@@ -2,7 +2,7 @@
 
 use carom_bodies::{Curve, DiscreteKind, DiscreteSpec, Link, PointMass};
 use carom_contact::law::{Adhesion, Crush, Curve as StopCurve, Stop};
-use carom_contact::{Initial, Law, Obstacle, Plane, Sliding};
+use carom_contact::{Friction, Initial, Law, Obstacle, Plane, Sliding};
 use carom_dynamics::{Model, ModelContact, ModelDiscrete, ModelTarget, Scheme, State};
 use carom_elements::Kind;
 use carom_mesh::{ElementId, Mesh, Surface};
@@ -114,10 +114,17 @@ impl Points {
         Ok(())
     }
 
+    /// Gives the stop made last another law.
+    pub(crate) fn law_of_stop(&mut self, law: Law) {
+        if let Some(stop) = self.contacts.last_mut() {
+            stop.law = law;
+        }
+    }
+
     /// Friction of the stop made last, and the radii (m) of the sections of its ends.
     pub(crate) fn rub(&mut self, friction: f64, radii: [f64; 2]) {
         if let Some(stop) = self.contacts.last_mut() {
-            stop.friction = friction;
+            stop.friction = friction.into();
             stop.secondary = around(stop.secondary.clone(), radii[0]);
             if let ModelTarget::Surface(primary) = &stop.primary {
                 stop.primary = ModelTarget::Surface(around(primary.clone(), radii[1]));
@@ -145,9 +152,15 @@ impl Points {
     }
 
     /// Contact of a mass by any law.
-    pub(crate) fn contact(&mut self, one: Point, target: ModelTarget, law: Law, friction: f64) {
+    pub(crate) fn contact(
+        &mut self,
+        one: Point,
+        target: ModelTarget,
+        law: Law,
+        friction: impl Into<Friction>,
+    ) {
         self.contacts.push(ModelContact {
-            friction,
+            friction: friction.into(),
             ..ModelContact::new("floor", Surface::of_points(&[one], [0.0; 3]), target, law)
         });
     }

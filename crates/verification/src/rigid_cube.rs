@@ -85,7 +85,7 @@ impl Cube {
             spin: [0.0; 3],
         });
         let mut touch = contact(corners(&mesh, &cube)?, plane(2, 1.0), self.law);
-        touch.friction = self.mu;
+        touch.friction = self.mu.into();
         let mut model = Model {
             contacts: vec![touch],
             gravity: [0.0, 0.0, -GRAVITY],

@@ -127,7 +127,7 @@ fn stop(
     });
     ModelContact {
         initial: Initial::Gap(GAP),
-        friction: FRICTION,
+        friction: FRICTION.into(),
         ..ModelContact::new(name, points, target, law)
     }
 }

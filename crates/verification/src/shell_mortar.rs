@@ -121,7 +121,7 @@ impl Stack {
         let below = [top, around[0].clone()];
         let joint = |(above, below): (Surface, Surface)| {
             let mut joint = contact(above, ModelTarget::Surface(below), DISPLACEMENT);
-            (joint.integration, joint.friction) = (self.integration, self.friction);
+            (joint.integration, joint.friction) = (self.integration, self.friction.into());
             joint
         };
         let loads = self.loads(&mesh, &around[1]);

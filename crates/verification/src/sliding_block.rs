@@ -127,7 +127,7 @@ impl Rough {
         };
         let foot = surface(&mesh, "block.bottom", &bodies[0])?;
         let mut rubbing = contact(foot, ModelTarget::Rigid(floor), self.law);
-        rubbing.friction = self.mu;
+        rubbing.friction = self.mu.into();
         let system = crate::witness::system(Model {
             contacts: vec![rubbing],
             supports,

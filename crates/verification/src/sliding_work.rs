@@ -229,7 +229,7 @@ impl Slide {
         };
         let mut touch = contact(foot, target, self.law);
         touch.integration = self.integration;
-        touch.friction = self.mu;
+        touch.friction = self.mu.into();
         Ok(Model {
             contacts: vec![touch],
             supports,

@@ -12,20 +12,20 @@ mod step;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::Cholesky;
-use carom_laws::{Law, Status};
+use carom_laws::{Friction, Law, Status};
 use carom_nonsmooth::ContactSolver;
 use carom_nonsmooth::coulomb::Slip;
 use carom_schemes::{LaursenChawla, Row, Scheme, StepMap, TimeScheme};
 use pyo3::prelude::*;
 
 use crate::errors::{failed, wrong};
-use crate::schemes::{read_law, read_scheme};
+use crate::schemes::{read_friction, read_law, read_scheme};
 use of_mass::OfMass;
 use rows::Rows;
 use sparse::{GivenMatrix, read, sum};
 
-/// Rows with their unknowns and coefficients, the tangents of each point after its normal; gaps, laws and coefficients of friction of the points.
-type GivenContacts = (Vec<Vec<(usize, f64)>>, Vec<f64>, Vec<String>, Vec<f64>);
+/// Rows with their unknowns and coefficients, the tangents of each point after its normal; gaps, laws and friction laws of the points.
+type GivenContacts = (Vec<Vec<(usize, f64)>>, Vec<f64>, Vec<String>, Vec<String>);
 
 /// Normal forces of the points, their tangential ones, and displacements, step by step.
 type History = (Vec<Vec<f64>>, Vec<Vec<[f64; 2]>>, Vec<Vec<f64>>);
@@ -45,8 +45,8 @@ struct Point {
     law: Law,
     /// g₀, m.
     gap: f64,
-    /// Coefficient of Coulomb's friction.
-    friction: f64,
+    /// Friction.
+    friction: Friction,
     status: Status,
     slip: Slip,
     /// Forces of the last step, N.
@@ -188,6 +188,8 @@ impl MatrixRun {
         let scheme = read_scheme(&scheme)?;
         let laws = laws.iter().map(|law| read_law(law));
         let laws = laws.collect::<PyResult<Vec<_>>>()?;
+        let friction = friction.iter().map(|friction| read_friction(friction));
+        let friction = friction.collect::<PyResult<Vec<_>>>()?;
         let map = map_of(&scheme, dt);
         refuse(&scheme, &map, &laws)?;
         let rows = Rows::new(rows, gaps.len(), n)?;
@@ -207,7 +209,7 @@ impl MatrixRun {
             || scheme.get().restores_contact_work()
             || laws.iter().any(Law::projects);
         let of_mass = staged.then(|| OfMass::new(&mass, &rows)).transpose()?;
-        let point = |((law, gap), friction): ((&Law, f64), f64)| Point {
+        let point = |((law, gap), friction): ((&Law, f64), Friction)| Point {
             law: *law,
             gap,
             friction,

@@ -97,6 +97,7 @@ impl MatrixRun {
                     dt: map.moves,
                     tolerance,
                     crush: given.crush,
+                    at: [placed, moving],
                 },
                 rate_free: self.quantity(row, &rate, true),
                 status: given.status,
@@ -148,7 +149,7 @@ impl MatrixRun {
     /// The row whose product with T is the sliding: a velocity where laws in the rate are all that have friction, and in explicit steps, in which
     /// no force changes the way; otherwise the way of the step.
     fn sliding(&self) -> Row {
-        let mut rubbing = self.points.iter().filter(|point| point.friction > 0.0);
+        let mut rubbing = self.points.iter().filter(|point| point.friction.acts());
         let by_rate = rubbing.all(|point| point.law.get().level() == Level::Rate);
         match by_rate || self.map.displacement.x == 0.0 {
             true => self.map.rate,
@@ -175,8 +176,16 @@ impl MatrixRun {
                 let row = self.rows.normal(point as usize) + 1 + k;
                 *free = self.quantity(row, &sliding, true);
             }
+            // the coefficient of sliding is that of the rate at the start of the step
+            let rate = |k: usize| {
+                let row = self.rows.normal(point as usize) + 1 + k;
+                self.rows.along(row, &self.motion.v).powi(2)
+            };
+            let law = given.friction.get();
+            let slides = law.slides((0..tangents).map(rate).sum::<f64>().sqrt());
             Tangential {
-                mu: given.friction,
+                mu: law.sticks(),
+                sliding: (slides < law.sticks()).then_some(slides),
                 free,
                 slip: given.slip,
                 force: given.tangential,

@@ -101,7 +101,7 @@ fn contact(
         },
         integration,
         massless: given.nodes == schema::Nodes::Massless,
-        friction: laws::coefficient(given.friction),
+        friction: given.friction.unwrap_or_default(),
         // a contact that may not penetrate is looked at here, where more can be said
         initial: match given.initial {
             Penetration::Refuse => Initial::Touch,

@@ -284,6 +284,8 @@ pub(super) fn acts_at_a_point(path: &str, law: &Law, problems: &mut Problems) ->
             "law.displacement",
             "law.velocity",
             "law.restitution",
+            "law.hertz",
+            "law.hunt-crossley",
             "law.stop",
         ]));
     }

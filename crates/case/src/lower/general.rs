@@ -220,7 +220,7 @@ fn between(
             true => mortar(Basis::default()),
             false => Integration::Node,
         },
-        friction: laws::coefficient(friction),
+        friction: friction.unwrap_or_default(),
         initial: Initial::Touch,
         near_only: !deletes,
         // surfaces around axes and middles have none, one that faces itself has its own

@@ -10,7 +10,7 @@ use super::context::Context;
 use super::lookup;
 use super::problems::Problems;
 use crate::error::Problem;
-use crate::schema::{Friction, Scheme};
+use crate::schema::Scheme;
 
 /// Part of the energy of an impact from which on the loss in a compliance is worth a warning.
 const LOSS: f64 = 0.01;
@@ -165,9 +165,4 @@ pub(super) fn springs(
 /// sqrt(k h/E) c/h in 1/s, for k in Pa/m: the frequency of a spring on half an element, over sqrt 2.
 fn spring_rate(stiffness: f64, side: &Side) -> f64 {
     (stiffness * side.size / side.young).sqrt() * side.wave_speed / side.size
-}
-
-/// The coefficient of friction, 0 without.
-pub(super) fn coefficient(given: Option<Friction>) -> f64 {
-    given.map_or(0.0, |Friction::Coulomb(coefficient)| coefficient)
 }

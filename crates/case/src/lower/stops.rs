@@ -7,7 +7,7 @@ use carom_mesh::{ElementId, Mesh, Surface};
 
 use super::context::Context;
 use super::discrete::{self, End};
-use super::laws::{coefficient, default_capture, no_curve};
+use super::laws::{default_capture, no_curve};
 use super::problems::Problems;
 use super::{lookup, obstacles};
 use crate::error::Problem;
@@ -93,7 +93,7 @@ fn stop(
     Some(ModelContact {
         initial: facing.initial,
         sliding: facing.sliding,
-        friction: coefficient(given.friction),
+        friction: given.friction.unwrap_or_default(),
         ..ModelContact::new(name, secondary, primary, law)
     })
 }

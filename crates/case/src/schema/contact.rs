@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::obstacle::Obstacle;
 use super::output::ChannelClass;
-use carom_laws::GivenLaw;
+use carom_laws::{Friction, GivenLaw};
 use carom_quantities::{Coordinate, Duration, Length, SurfaceDamping, SurfaceStiffness, Vector};
 
 /// Contact between two surfaces, between a surface and a rigid obstacle, or of a surface with itself.
@@ -107,14 +107,6 @@ pub struct MaterialPair {
     pub law: Option<GivenLaw>,
     /// Friction. Default: that of the general contact.
     pub friction: Option<Friction>,
-}
-
-/// Friction.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Friction {
-    /// Coulomb's coefficient of friction.
-    Coulomb(#[schemars(extend("minimum" = 0.0))] f64),
 }
 
 /// What is done where surfaces penetrate at the start.

@@ -3,14 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use carom_laws::{Adhesion, Crush, CurvePoint, GivenLaw};
+use carom_laws::{Adhesion, Crush, CurvePoint, Friction, GivenLaw};
 use carom_quantities::{
     Clearance, Coordinate, Damping, MomentOfInertia, SignedForce, Stiffness, Vector, Velocity,
     Weight,
 };
 
 use super::body::Initial;
-use super::contact::Friction;
 use super::obstacle::{NormalVector, Obstacle};
 
 /// A point mass: at a node of its own, or at each node of a group.
@@ -132,7 +131,7 @@ pub struct Stop {
     #[serde(default)]
     pub adhesion: Adhesion,
     /// A law of contacts in place of the spring and the dashpot of the stop, whose keys are then not needed and do not matter:
-    /// `displacement`, `velocity`, `restitution` or `stop`. For comparisons.
+    /// `displacement`, `velocity`, `restitution`, `hertz`, `hunt-crossley` or `stop`.
     pub law: Option<GivenLaw>,
     /// Friction across the axis while the stop is closed. Default: none.
     pub friction: Option<Friction>,

@@ -38,7 +38,7 @@ pub use body::{
     PlaneSection, Reduced, Rigid, Section, ShellPly, ShellSection, ShellTaper, Support,
     ThicknessColumns,
 };
-pub use carom_laws::GivenLaw;
+pub use carom_laws::{Friction, GivenLaw};
 pub use carom_quantities::{
     Acceleration, AngularVelocity, Area, Clearance, Coordinate, Damping, Delay, Density, Duration,
     Force, Frequency, Length, Modulus, Rate, SignedForce, SignedMoment, SignedStress, Stiffness,
@@ -46,8 +46,8 @@ pub use carom_quantities::{
 };
 pub use carom_schemes::Scheme;
 pub use contact::{
-    Basis, Contact, Friction, GeneralBy, GeneralContact, Integration, IntegrationName,
-    IntegrationWith, MaterialPair, Mortar, Nodes, Penetration, Sliding,
+    Basis, Contact, GeneralBy, GeneralContact, Integration, IntegrationName, IntegrationWith,
+    MaterialPair, Mortar, Nodes, Penetration, Sliding,
 };
 pub use discrete::{Dashpot, DashpotPoint, Ends, PointMass, Spring, SpringPoint, Stop};
 pub use expect::{Amount, Expect, ExpectKind, Take};

@@ -58,6 +58,7 @@ impl Contacts {
 
 /// Status and force (N) of a law with a compliance at a gap (m) and a rate (m/s).
 fn at_rest(law: &dyn ContactLaw, (gap, rate): (f64, f64), local: &Local) -> (Status, f64) {
+    let local = &local.about(gap, rate);
     let (mut status, mut force) = (Status::Open, 0.0);
     for look in 0..LOOKS {
         let end = End {

@@ -179,6 +179,7 @@ impl Contacts {
             dt: attempt.moves(point),
             tolerance: attempt.system.tolerance_at(point),
             crush: attempt.state.interface.crush[point],
+            at: [gap, rate],
         }
     }
 
@@ -385,7 +386,7 @@ impl Contacts {
                     }
                 }
                 _ => {
-                    let local = self.local(attempt, point, gap);
+                    let local = self.local(attempt, point, gap).about(gap, rate);
                     let relation = match status {
                         Status::Open => law.get().relation(Status::Closed, &local),
                         _ => law.get().relation(status, &local),

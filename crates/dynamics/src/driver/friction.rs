@@ -209,8 +209,10 @@ impl Contacts {
                 let step = factor * free(number);
                 *q = self.slid(attempt, at, k, (without, time)) + step;
             }
+            let (mu, slides) = self.coefficients(attempt, at);
             Tangential {
-                mu: attempt.system.contacts[attempt.system.contact_of(at)].friction,
+                mu,
+                sliding: (slides < mu).then_some(slides),
                 free: q,
                 slip: self.slips[at],
                 force: attempt.next.interface.friction[at],

@@ -23,10 +23,11 @@ pub(super) fn first_thought(friction: &[f64; 2]) -> Slip {
 impl Contacts {
     /// Whether a candidate has friction.
     pub(super) fn rubs(&self, attempt: &Attempt) -> bool {
-        let mu = |&point: &u32| {
-            attempt.system.contacts[attempt.system.contact_of(point as usize)].friction
+        let acts = |&point: &u32| {
+            let contact = attempt.system.contact_of(point as usize);
+            attempt.system.contacts[contact].friction.acts()
         };
-        attempt.system.tangents() > 0 && self.candidates.iter().any(|point| mu(point) > 0.0)
+        attempt.system.tangents() > 0 && self.candidates.iter().any(acts)
     }
 
     /// Points that carried friction are first thought to stick.
@@ -127,7 +128,11 @@ impl Contacts {
         let (Some(t), Some(slip)) = (interface.friction.get(point), self.slips.get(point)) else {
             return 0.0;
         };
-        let mu = attempt.system.contacts[attempt.system.contact_of(point)].friction;
+        let (sticks, slides) = self.coefficients(attempt, point);
+        let mu = match slip {
+            Slip::Slip => slides,
+            Slip::Stick | Slip::Open => sticks,
+        };
         let beyond = t[0].hypot(t[1]) - mu * interface.force[point].max(0.0);
         let defect = match slip {
             Slip::Slip => beyond.abs(),
@@ -138,6 +143,18 @@ impl Contacts {
         } else {
             defect / ((2.0 + mu) * largest)
         }
+    }
+
+    /// Coefficients of friction with which a point sticks and slides in the step, by the rate of its sliding at the start.
+    pub(super) fn coefficients(&self, attempt: &Attempt, point: usize) -> (f64, f64) {
+        let friction = &attempt.system.contacts[attempt.system.contact_of(point)].friction;
+        let mut square = 0.0;
+        for rows in &self.pairing.tangents[..attempt.system.tangents()] {
+            let rate = rows.product(point, &attempt.state.motion.v) + rows.rate(point);
+            square += rate * rate;
+        }
+        let law = friction.get();
+        (law.sticks(), law.slides(square.sqrt()))
     }
 
     /// Way that a point slides along one tangent in the step that was taken, m.
@@ -236,7 +253,8 @@ impl Attempt {
     pub(super) fn slides_by_rate(&self) -> bool {
         let system = &*self.system;
         let of_rate = |k: usize| system.contacts[k].law.get().level() == Level::Rate;
-        let mut rubbing = (0..system.contacts.len()).filter(|&k| system.contacts[k].friction > 0.0);
+        let mut rubbing =
+            (0..system.contacts.len()).filter(|&k| system.contacts[k].friction.acts());
         let way_is_known = self.maps.all().iter().all(|map| map.displacement.x == 0.0);
         !self.maps.is_static() && (way_is_known || rubbing.all(of_rate))
     }

@@ -56,7 +56,7 @@ fn rods(friction: f64) -> Model {
     let target = ModelTarget::Surface(around(0, "a"));
     let contact = ModelContact {
         sliding: Sliding::Finite,
-        friction,
+        friction: friction.into(),
         ..ModelContact::new("crossing", around(1, "b"), target, law)
     };
     let scheme = Scheme::EnergyMomentum(EnergyMomentum {});

@@ -194,10 +194,10 @@ fn model(case: &Case) -> Model {
         velocity: [1.0, 0.5, -3.0],
         ..ModelBody::new(spec)
     };
-    let ground = |friction| ModelContact {
+    let ground = |friction: f64| ModelContact {
         sliding: Sliding::Finite,
         integration: Integration::Node,
-        friction,
+        friction: friction.into(),
         ..ModelContact::new(
             "ground",
             bottom.clone(),

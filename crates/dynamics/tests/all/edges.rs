@@ -71,7 +71,7 @@ fn sheared(secondary: usize) -> Driver {
             sliding: Sliding::Finite,
             integration: Integration::Mortar { basis: Basis::Dual },
             massless: false,
-            friction: MU,
+            friction: MU.into(),
             initial: Initial::Keep,
             depth: None,
             moment_about: None,

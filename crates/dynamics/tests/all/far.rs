@@ -56,7 +56,7 @@ fn blocks(fall: Fall, law: Law, near_only: bool) -> Model {
     let contact = ModelContact {
         sliding: Sliding::Finite,
         integration: Integration::Node,
-        friction: 0.2,
+        friction: 0.2.into(),
         depth: Some(0.1),
         near_only,
         ..ModelContact::new("all", side(1), ModelTarget::Surface(side(0)), law)

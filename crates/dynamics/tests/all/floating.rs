@@ -163,7 +163,7 @@ fn loads_that_no_contact_takes_are_named() {
         model.nonlinear.loads = vec![traction(&model, "a.left", [0.01, 0.0, 0.0])];
         assert_eq!(refusal(model.clone()), "1 a: move along x");
         // the same load, with friction
-        model.contacts[0].friction = 0.5;
+        model.contacts[0].friction = 0.5.into();
         assert_eq!(refusal(model), "stands");
 
         // pulled off in the second step

@@ -74,7 +74,7 @@ fn pressed([depth, way]: [f64; 2], sight: (Option<f64>, bool)) -> Driver {
             sliding: Sliding::Finite,
             integration: Integration::Node,
             massless: false,
-            friction: 0.0,
+            friction: 0.0.into(),
             initial: Initial::Keep,
             depth: sight.0,
             moment_about: None,

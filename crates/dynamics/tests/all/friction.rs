@@ -33,7 +33,7 @@ fn body(mesh: &Mesh, name: &str, kinematics: Kinematics, material: Material) -> 
 fn rubbing(mesh: &Mesh, group: &str, of: &ModelBody, primary: ModelTarget) -> ModelContact {
     ModelContact {
         sliding: Sliding::Finite,
-        friction: 0.5,
+        friction: 0.5.into(),
         ..ModelContact::new(
             "rubbing",
             Surface::new(mesh, &mesh.groups[group], &of.spec.cells).unwrap(),
@@ -232,7 +232,7 @@ fn a_block_pressed_on_a_rough_plane_sticks_inside_and_slips_at_its_edges_alike()
         normal: [0.0, 1.0, 0.0],
     };
     let mut contact = rubbing(&mesh, "a.bottom", &block, ModelTarget::rigid(plane));
-    contact.friction = 0.2;
+    contact.friction = 0.2.into();
     let down = Amplitude::new(vec![[0.0, 0.0], [4.0, -0.2]]).unwrap();
     let top = Prescribed {
         nodes: mesh.group_nodes(&mesh.groups["a.top"]),

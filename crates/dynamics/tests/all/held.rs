@@ -20,7 +20,7 @@ fn force(lean: f64, law: Law, friction: f64) -> f64 {
         point: [0.0; 3],
         normal: [lean / length, 1.0 / length, 0.0],
     });
-    model.contacts[0].friction = friction;
+    model.contacts[0].friction = friction.into();
     model.bodies[0].velocity = [0.0; 3];
     let held = |side: &str, fix: [bool; 3]| Support {
         nodes: model.mesh.group_nodes(&model.mesh.groups[side]),

@@ -256,7 +256,7 @@ fn an_oblique_impact_with_friction_has_the_approach_and_restitution_of_the_norma
     let mut model = super::newton::square(theta, HALF, super::newton::SOFT.into(), 4);
     model.gravity = [0.0; 3];
     model.bodies[0].velocity = [0.3, -0.2, 0.0];
-    model.contacts[0].friction = 0.3;
+    model.contacts[0].friction = 0.3.into();
     let mut newton = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..60 {
         newton.step().unwrap();

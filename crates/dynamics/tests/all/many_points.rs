@@ -30,7 +30,7 @@ fn plates(across: usize, integration: Integration, friction: f64) -> Driver {
         let target = ModelTarget::Surface(other);
         ModelContact {
             integration,
-            friction,
+            friction: friction.into(),
             ..ModelContact::new("joint", own, target, velocity())
         }
     });
@@ -129,7 +129,7 @@ fn ten_thousand_points_have_at_most_a_hundred_numbers_each() {
 fn of_a_surface_that_faces_itself_the_finer_side_tells_the_contact() {
     let finite = |own, target, law| ModelContact {
         sliding: Sliding::Finite,
-        friction: FRICTION,
+        friction: FRICTION.into(),
         ..ModelContact::new("joint", own, ModelTarget::Surface(target), law)
     };
     let told = |[upper, lower]: [Surface; 2]| match upper.faces.len() > lower.faces.len() {
@@ -190,7 +190,7 @@ fn falling(count: usize, friction: f64) -> Driver {
             normal: [0.0, 0.0, 1.0],
         });
         ModelContact {
-            friction,
+            friction: friction.into(),
             ..ModelContact::new(name(k), side, plane, law)
         }
     };

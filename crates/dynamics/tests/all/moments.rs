@@ -81,7 +81,7 @@ fn on_block(about: [f64; 3]) -> Model {
     let contact = ModelContact {
         sliding: Sliding::Finite,
         integration: Integration::Mortar { basis: Basis::Dual },
-        friction: 0.3,
+        friction: 0.3.into(),
         moment_about: Some(about),
         ..ModelContact::new(
             "touch",

@@ -114,7 +114,7 @@ fn wavy(dim: usize, scheme: Scheme, friction: f64) -> Model {
     }
     model.bodies[0].velocity[0] = 0.3;
     model.contacts[0].sliding = Sliding::Finite;
-    model.contacts[0].friction = friction;
+    model.contacts[0].friction = friction.into();
     model.contacts[0].integration = Integration::Mortar {
         basis: Basis::Standard,
     };

@@ -471,7 +471,7 @@ fn attempts_that_fail_are_counted_in_the_costs() {
         3,
     );
     model.gravity = [0.0, -1.0, 0.0];
-    model.contacts[0].friction = 0.3;
+    model.contacts[0].friction = 0.3.into();
     model.contacts[0].primary = ModelTarget::rigid(Plane {
         point: [0.0; 3],
         normal: [0.0, 1.0, 0.0],

@@ -75,7 +75,7 @@ fn on_a_plane(edges: usize, friction: f64) -> Model {
         point: [0.0; 3],
         normal: [0.0, 1.0, 0.0],
     });
-    contact.friction = friction;
+    contact.friction = friction.into();
     contact.sliding = Sliding::Finite;
     model.contacts[0].secondary = edge(&model);
     model

@@ -84,7 +84,7 @@ fn small_sliding_leaves_a_linear_system_linear_and_is_not_finite_sliding() {
 /// Force and friction after the top of the square has come down on the sphere by `way` and along it by as much.
 fn pressed(sliding: Sliding, way: f64) -> [f64; 2] {
     let mut model = over_sphere(TRAPEZOID, DISPLACEMENT, sliding);
-    model.contacts[0].friction = 0.1;
+    model.contacts[0].friction = 0.1.into();
     model.contacts[0].primary = ModelTarget::rigid(Sphere {
         centre: [0.5, -2.0, 0.0],
         radius: 2.0,
@@ -127,7 +127,7 @@ fn on_a_plane_that_moves_small_and_finite_sliding_are_one() {
     let run = |sliding| {
         let mut model = square(TRAPEZOID, DISPLACEMENT, SOFT.into(), 3);
         model.bodies[0].velocity = [0.1, 0.0, 0.0];
-        model.contacts[0].friction = 0.3;
+        model.contacts[0].friction = 0.3.into();
         model.contacts[0].sliding = sliding;
         let plane = Plane {
             point: [0.0, -0.01, 0.0],

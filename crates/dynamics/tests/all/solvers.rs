@@ -47,7 +47,7 @@ fn driver(solver: Solver, (capture, friction): (Capture, f64)) -> Driver {
     });
     let primary = ModelTarget::Surface(surface(1, "plate.top"));
     let contact = ModelContact {
-        friction,
+        friction: friction.into(),
         ..ModelContact::new("touch", surface(0, "block.bottom"), primary, law)
     };
     let step = 0.5 / N as f64 / RUBBER.wave_speed(Plane::Full);

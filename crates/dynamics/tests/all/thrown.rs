@@ -126,7 +126,7 @@ impl Thrown {
         });
         let secondary = Surface::new(mesh, &group, &cells).unwrap();
         let mut contact = ModelContact::new("c", secondary, plane, law);
-        (contact.friction, contact.sliding) = (touch.mu, Sliding::Finite);
+        (contact.friction, contact.sliding) = (touch.mu.into(), Sliding::Finite);
         let scheme = Scheme::Theta(Theta { theta: 0.5 });
         let mut model = Model {
             contacts: vec![contact],

@@ -2,7 +2,7 @@
 
 use carom_laws::{End, Status};
 
-use super::{FrictionProblem, FrictionSolution};
+use super::{FrictionProblem, FrictionSolution, Slip};
 
 /// A row of D p: the sum, the sum of the sizes of its terms, the share of the candidate itself, and the diagonal.
 #[derive(Clone, Copy)]
@@ -57,12 +57,19 @@ impl FrictionProblem {
         let candidate = &self.candidates[i];
         let [s_g, s_v] = candidate.factors([self.factors[0], self.factors[1]]);
         let (law, force) = (candidate.law.get(), solution.forces[i]);
+        let end = End {
+            gap_released: candidate.local.gap_free + s_g * (dp.sum - dp.own),
+            gap: candidate.local.gap_free + s_g * dp.sum,
+            rate: candidate.rate_free + s_v * dp.sum,
+            force,
+        };
+        let local = candidate.local.about(end.gap, end.rate);
         let defect = |status: Status| {
             let closed = match status {
                 Status::Open => Status::Closed,
                 other => other,
             };
-            let relation = law.relation(closed, &candidate.local);
+            let relation = law.relation(closed, &local);
             let factor = relation.gap * s_g + relation.rate * s_v;
             let free = [
                 relation.gap * candidate.local.gap_free,
@@ -78,12 +85,6 @@ impl FrictionProblem {
                 }
                 _ => relative(factor * dp.sum + free.iter().sum::<f64>(), size),
             }
-        };
-        let end = End {
-            gap_released: candidate.local.gap_free + s_g * (dp.sum - dp.own),
-            gap: candidate.local.gap_free + s_g * dp.sum,
-            rate: candidate.rate_free + s_v * dp.sum,
-            force,
         };
         let status = solution.statuses[i];
         let asked = law.status(status, &end, &candidate.local, 0);
@@ -104,7 +105,11 @@ impl FrictionProblem {
             y[k] = t[k] - rho * q;
             size += t[k].abs() + rho * (point.free[k].abs() + self.factors[2] * lines[k].size);
         }
-        let (bound, length) = (point.mu * solution.forces[i].max(0.0), y[0].hypot(y[1]));
+        let mu = match (solution.slips[i], point.sliding) {
+            (Slip::Slip, Some(mu)) => mu,
+            _ => point.mu,
+        };
+        let (bound, length) = (mu * solution.forces[i].max(0.0), y[0].hypot(y[1]));
         let share = if length > bound { bound / length } else { 1.0 };
         relative((t[0] - share * y[0]).hypot(t[1] - share * y[1]), size)
     }

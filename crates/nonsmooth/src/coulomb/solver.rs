@@ -10,6 +10,7 @@ use super::sweep::Product;
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
 use crate::Compliance;
+use crate::tangents::{Tangents, are_linear};
 
 /// Largest defect of a solution, relative to the terms that should balance in its candidate. Passes go on to it where they
 /// can; where they bring nothing more, [`Posed::tolerance`] decides.
@@ -91,11 +92,33 @@ pub struct Coulomb {
     /// All entries of D where passes took over from sweeps.
     entries: Vec<f64>,
     anderson: Anderson,
+    tangents: Tangents,
 }
 
 impl Coulomb {
-    /// Solves for the forces and statuses.
+    /// Solves for the forces and statuses. Relations of laws that are not linear are renewed until they stand; points that slide where
+    /// they would slide with the larger coefficient too have the lower one.
     pub fn solve(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {
+        match problem.friction.iter().all(|own| own.sliding.is_none()) {
+            true => self.solve_at_once(problem),
+            false => self.lower(problem),
+        }
+    }
+
+    /// Solves for the forces and statuses, with the coefficients as they are.
+    pub(super) fn solve_at_once(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {
+        if are_linear(problem.candidates) {
+            return self.settle(problem);
+        }
+        let mut tangents = std::mem::take(&mut self.tangents);
+        tangents.begin(problem.candidates);
+        let solved = self.renew(problem, &mut tangents);
+        self.tangents = tangents;
+        solved
+    }
+
+    /// Solves for the forces and statuses, with the relations of the candidates as they are.
+    pub(super) fn settle(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {
         (self.passes, self.sweeps) = (0, 0);
         self.reversals.clear();
         self.reversals.resize(problem.len(), 0);

@@ -11,7 +11,7 @@ pub enum Slip {
     Open,
     /// q = 0.
     Stick,
-    /// |t| = μ P; also without friction.
+    /// |t| = μ P, with the lower μ of sliding where there is one; also without friction.
     Slip,
 }
 
@@ -20,6 +20,9 @@ pub enum Slip {
 pub struct Tangential {
     /// μ, zero or more.
     pub mu: f64,
+    /// μ of a point that slides, where it is lower: such a point sticks with |t| <= `mu` P, otherwise |t| = `sliding` P.
+    #[serde(default)]
+    pub sliding: Option<f64>,
     /// q_f, in m or m/s, along each tangent; the second is not used in the plane.
     pub free: [f64; 2],
     /// Status at the end of the last step: a guess.

@@ -4,6 +4,7 @@ use carom_testing::Random;
 use super::*;
 use crate::interface::{Candidate, Interface};
 use crate::{Compliance, Lumped, Unknown};
+mod of_laws;
 mod together;
 
 fn candidate(law: Law, gap_free: f64) -> Candidate {
@@ -356,18 +357,6 @@ fn a_solved_problem_starts_the_next_one_near_its_end() {
 }
 
 #[test]
-fn compliant_laws_take_friction() {
-    // 2 g₊ + P = 0 with g₊ = -1 + 0.5 P: P = 1; slip with t = -μ P
-    let mut problem = single(0.25, -1.0, [5.0, 0.0], 1, 0.0);
-    problem.candidates[0].law = soft();
-    problem.factors = [0.5, 1.0, 1.0];
-    let solution = problem.solve().unwrap();
-    assert!((solution.forces[0] - 1.0).abs() < 1e-14);
-    assert!((solution.tangential[0][0] + 0.25).abs() < 1e-14);
-    assert!(problem.defect(&solution) < 1e-14);
-}
-
-#[test]
 fn the_measure_of_the_error_sees_each_violation() {
     let problem = single(0.3, -2.0, [0.5, 0.0], 1, 0.0);
     let right = problem.solve().unwrap();
@@ -495,6 +484,7 @@ fn disc_in_a_corner(mu: f64, free: [f64; 3], offsets: [f64; 2]) -> FrictionProbl
         slip: Slip::Stick,
         force: [0.0; 2],
         pressed: 0.0,
+        sliding: None,
     };
     FrictionProblem {
         step: 0,

@@ -9,7 +9,7 @@ use carom_nonsmooth::{Compliance, Lumped, Unknown};
 use carom_testing::Random;
 
 /// n × n nodes at distances of 1 upon as many faces of the size `size`; per point its four nodes and their shares.
-fn surface(n: usize, size: f64) -> Vec<[(usize, f64); 4]> {
+pub(crate) fn surface(n: usize, size: f64) -> Vec<[(usize, f64); 4]> {
     let across = (n as f64 / size).ceil() as usize + 2;
     let on_faces = |k: usize| {
         let [x, y] = [k % n, k / n].map(|i| (i as f64 + 0.3) / size);
@@ -27,7 +27,7 @@ fn surface(n: usize, size: f64) -> Vec<[(usize, f64); 4]> {
 }
 
 /// The rows of these points on nodes of mass 1 above and of mass `size`² below, three unknowns each.
-fn rows(points: &[[(usize, f64); 4]], size: f64, tangents: usize) -> Lumped {
+pub(crate) fn rows(points: &[[(usize, f64); 4]], size: f64, tangents: usize) -> Lumped {
     let below = 3 * points.len() as u32;
     let of_point = |(k, point): (usize, &[(usize, f64); 4])| -> Vec<Row> {
         let along = |axis: usize| {
@@ -82,6 +82,7 @@ fn sliding(count: usize, random: &mut Random) -> Vec<Tangential> {
         slip: Slip::Open,
         force: [0.0; 2],
         pressed: 0.0,
+        sliding: None,
     };
     (0..count).map(one).collect()
 }

@@ -79,7 +79,7 @@ pub(super) fn contact_columns(system: &System, k: usize) -> Vec<String> {
         add("gap rate", "m/s"),
         add("closed points", ""),
     ]);
-    if system.contacts[k].friction > 0.0 {
+    if system.contacts[k].friction.acts() {
         names.extend([add("friction", "N"), add("slipping points", "")]);
     }
     names

@@ -50,8 +50,9 @@ pub(crate) fn contacts(results: &Results) -> BTreeMap<String, Contact> {
                 }),
                 impulse: in_time(record.impulse()),
                 impulsive: record.impulse_of_jumps(),
-                friction: (system.contacts[k].friction > 0.0).then_some(Friction {
-                    coefficient: system.contacts[k].friction,
+                friction: system.contacts[k].friction.acts().then(|| Friction {
+                    coefficient: system.contacts[k].friction.get().sticks(),
+                    kinetic: system.contacts[k].friction.kinetic(),
                     peak_force: totals.peak_friction,
                     loss: record.friction_loss(),
                 }),

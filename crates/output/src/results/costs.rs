@@ -60,7 +60,7 @@ pub(super) fn timings(results: &Results, ending: &Ending) -> BTreeMap<String, f6
         .system
         .contacts
         .iter()
-        .all(|pair| pair.friction == 0.0)
+        .all(|pair| !pair.friction.acts())
     {
         timings.remove("friction");
     }

@@ -436,7 +436,7 @@ impl SurfaceGrid {
                 values: Values::Vector(&displacement),
             },
         ];
-        if system.contacts[self.contact].friction > 0.0 && !traction.is_empty() {
+        if system.contacts[self.contact].friction.acts() && !traction.is_empty() {
             fields.push(scalar("friction_traction", &traction));
         }
         fields.extend(signs.into_iter().map(|(name, values)| Field {

@@ -307,7 +307,7 @@ fn put(system: &System, (k, contact): (usize, &ContactReport), row: &mut Vec<Cel
     // the gap of what faces nothing does not exist
     row.push(Some(contact.gap).filter(|gap| *gap != f64::INFINITY).into());
     row.extend([contact.rate, contact.closed as f64].map(Cell::Number));
-    if system.contacts[k].friction > 0.0 {
+    if system.contacts[k].friction.acts() {
         row.extend([contact.friction, contact.slipping as f64].map(Cell::Number));
     }
 }

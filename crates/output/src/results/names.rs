@@ -65,7 +65,12 @@ const MOMENT: &[Key] = &[
     ("time", "s"),
 ];
 
-const FRICTION: &[Key] = &[("coefficient", ""), ("peak_force", "N"), ("loss", "J")];
+const FRICTION: &[Key] = &[
+    ("coefficient", ""),
+    ("kinetic", ""),
+    ("peak_force", "N"),
+    ("loss", "J"),
+];
 
 const STATISTICS: &[Key] = &[
     ("count", ""),
@@ -205,7 +210,7 @@ pub fn quantities(system: &System, settings: &Settings) -> Vec<Quantity> {
         if system.contacts[k].moment.is_some() {
             names.add(&format!("{table}.peak_moment"), MOMENT);
         }
-        if system.contacts[k].friction > 0.0 {
+        if system.contacts[k].friction.acts() {
             names.add(&format!("{table}.friction"), FRICTION);
         }
     }

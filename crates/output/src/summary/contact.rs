@@ -133,11 +133,14 @@ pub struct Load {
     pub impulse: [f64; 3],
 }
 
-/// Coulomb friction of a contact.
+/// Friction of a contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Friction {
-    /// Its coefficient.
+    /// Its coefficient, of points that stick.
     pub coefficient: f64,
+    /// That of points that slide fast, where it is another one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kinetic: Option<f64>,
     /// Largest magnitude of the sum of the friction forces in a step, N.
     pub peak_force: f64,
     /// Energy that friction took, J: its work on what slides, a measure of wear.

@@ -65,6 +65,7 @@ impl CrossZoneContacts {
         };
         let (system, interface) = (&*self.system, &self.state.interface);
         let (rows, start) = (&self.geometry.pairing.rows, &self.geometry.start);
+        let tangents = &self.geometry.pairing.tangents;
         self.solver.candidates.clear();
         self.solver.friction.clear();
         for (i, &point) in candidates.points.iter().enumerate() {
@@ -94,6 +95,7 @@ impl CrossZoneContacts {
                     dt,
                     tolerance: system.tolerance_at(point),
                     crush: interface.crush[point],
+                    at: [0.0; 2],
                 },
                 rate_free,
                 status: match candidates.forces[row] != 0.0 {
@@ -106,13 +108,17 @@ impl CrossZoneContacts {
             if candidates.tangents == 0 {
                 continue;
             }
-            let (mut along, mut force) = ([0.0; 2], [0.0; 2]);
+            let (mut along, mut force, mut square) = ([0.0; 2], [0.0; 2], 0.0);
             for k in 0..candidates.tangents {
                 along[k] = free(row + 1 + k);
                 force[k] = candidates.forces[row + 1 + k];
+                square += tangents[k].product(point, &start[1]).powi(2);
             }
+            let law = system.contacts[system.contact_of(point)].friction.get();
+            let (mu, slides) = (law.sticks(), law.slides(square.sqrt()));
             self.solver.friction.push(Tangential {
-                mu: system.contacts[system.contact_of(point)].friction,
+                mu,
+                sliding: (slides < mu).then_some(slides),
                 free: along,
                 slip: match force == [0.0; 2] {
                     true => Slip::Open,

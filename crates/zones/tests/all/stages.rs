@@ -155,7 +155,7 @@ fn stacked(m: u32, (friction, angle): (f64, f64), staged: bool) -> Zoned {
     let law = Law::Displacement(Displacement::default());
     let (secondary, primary) = (side("above.bottom", 1), side("below.top", 0));
     let mut contact = ModelContact::new("c", secondary, ModelTarget::Surface(primary), law);
-    contact.friction = friction;
+    contact.friction = friction.into();
     contact.sliding = Sliding::Finite;
     let floor = held(mesh.group_nodes(&mesh.groups["below.bottom"]));
     let mut model = Model::new(bodies, mesh, MID_POINT, 1e-3);

@@ -1,7 +1,5 @@
 //! Contacts whose sides have changed sides without a force, within a step or between the points that carry forces.
 
-use carom_contact::Law;
-
 use crate::form::Form;
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Grade, Line};
@@ -16,7 +14,7 @@ pub(super) fn between(evidence: &Evidence) -> Finding {
     let contacts = evidence.system.contacts.iter().enumerate();
     let records = contacts.zip(&evidence.last.records.contacts);
     let depths = records
-        .filter(|((_, contact), _)| !matches!(contact.law, Law::Stop(_)))
+        .filter(|((_, contact), _)| !contact.law.get().is_of_the_whole())
         .map(|((k, contact), record)| {
             let depth = record.between.value / evidence.system.depth_of_elements(k);
             (&*contact.name, depth)

@@ -1,7 +1,7 @@
 //! Whether the elements resolve the patch in which bodies touch.
 
 use carom_bodies::Body;
-use carom_contact::{Integration, Law};
+use carom_contact::Integration;
 use carom_dynamics::System;
 
 use super::resolution::LESSER;
@@ -61,11 +61,11 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
 
 /// Whether the force of a contact depends on how its sides indent each other, over a patch that grows with the force.
 ///
-/// Others have points by nature: a stop has the stiffness that it was given; bars and beams have no surface, and a plate bends
+/// Others have points by nature: a stop or a Hertz point has the stiffness that it was given; bars and beams have no surface, and a plate bends
 /// by a finite way under a force at a point, so that shells need no patch; discrete bodies are points, and rigid ones do not
 /// indent each other; reduced bodies carry forces at the nodes that the case names.
 fn indents(system: &System, contact: usize) -> bool {
-    let is_stop = matches!(system.contacts[contact].law, Law::Stop(_));
+    let is_given = system.contacts[contact].law.get().is_of_the_whole();
     let bodies = || {
         system.contacts[contact]
             .bodies
@@ -77,7 +77,7 @@ fn indents(system: &System, contact: usize) -> bool {
         solid.is_some_and(|solid| solid.kinematics().dim() > 1)
     };
     let has_patch = |body: &Body| is_continuum(body) || body.as_rigid().is_some();
-    !is_stop && bodies().any(is_continuum) && bodies().all(has_patch)
+    !is_given && bodies().any(is_continuum) && bodies().all(has_patch)
 }
 
 /// Nodes of the surface that carries the points of a contact.

@@ -1,7 +1,5 @@
 //! Bodies that go into each other, and through each other.
 
-use carom_contact::Law;
-
 use crate::form::Form;
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
@@ -10,12 +8,12 @@ use crate::verdict::{Bounds, Line};
 /// A tenth is more than any small strain; a whole element is deeper than the layer that carries the surface.
 const BOUNDS: Bounds = Bounds::Both(0.1, 1.0);
 
-/// The contact with the deepest penetration; stops are given theirs by their curve.
+/// The contact with the deepest penetration; stops and other laws of the contact as a whole are given theirs.
 pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
     let contacts = evidence.system.contacts.iter().enumerate();
     let records = contacts.zip(&evidence.last.records.contacts);
     let depths = records
-        .filter(|((_, contact), _)| !matches!(contact.law, Law::Stop(_)))
+        .filter(|((_, contact), _)| !contact.law.get().is_of_the_whole())
         .map(|((k, contact), record)| {
             let depth = record.penetration / evidence.system.depth_of_elements(k);
             (&*contact.name, depth)

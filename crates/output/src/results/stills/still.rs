@@ -238,12 +238,14 @@ fn contact(system: &System, seen: &Seen, interface: &InterfaceState) -> Vec<(f32
     found.into_iter().map(mean).collect()
 }
 
-/// Whether the friction force of a point is at its bound μ P, to a millionth of it.
+/// Whether the friction force of a point is at its bound μ P, to a millionth of it; where it depends on the speed, above that of fast
+/// sliding.
 pub(crate) fn slips(system: &System, point: usize, interface: &InterfaceState) -> bool {
     let Some([one, other]) = interface.friction.get(point) else {
         return false;
     };
-    let bound = system.contacts[system.contact_of(point)].friction * interface.force[point];
+    let law = system.contacts[system.contact_of(point)].friction;
+    let bound = law.get().slides(f64::INFINITY) * interface.force[point];
     bound > 0.0 && one.hypot(*other) >= bound * (1.0 - 1e-6)
 }
 
