@@ -7,12 +7,12 @@ use carom_contact::law::Displacement;
 use carom_contact::{Law, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
-    Model, ModelBody, ModelConstraint, ModelContact, ModelLink, ModelTarget, Preload, Scheme,
-    Stepper, System,
+    Amplitude, Model, ModelBody, ModelConstraint, ModelContact, ModelLink, ModelTarget, Preload,
+    Scheme, Stepper, System,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
-use carom_system::Support;
+use carom_system::{Prescribed, Support};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 const RUBBER: Elastic = Elastic {
@@ -235,5 +235,35 @@ fn friction_between_zones_of_unequal_steps_takes_what_it_should() {
         assert!(taken < 1e-12 && lost > 0.0, "{m}: {lost} {taken:e}");
         let left = balance.impulse_links.largest() / start.momentum.largest();
         assert!(left < 1e-12, "{m}: impulses between the zones {left:e}");
+    }
+}
+
+/// Bars whose end is moved at their own speed move as one, to rounding; the support holds a row of the link too.
+#[test]
+fn supports_that_move_carry_what_links_and_constraints_join() {
+    for m in [[1, 2], [3, 2]] {
+        let mut zoned = hanging(m);
+        zoned.model.nonlinear.preload = None;
+        zoned.model.gravity = [0.0; 3];
+        let top = zoned.model.supports.remove(0);
+        for body in &mut zoned.model.bodies {
+            body.velocity = [0.3, 0.0, 0.0];
+        }
+        let moved = Amplitude::new(vec![[0.0, 0.0], [1.0, 0.3]]).unwrap();
+        let prescribed = |nodes| Prescribed {
+            nodes,
+            displacement: [Some(moved.clone()), None, None],
+        };
+        let joint = zoned.links[0].rows[0].outer[0].node;
+        let motions = [top.nodes, vec![joint]].map(prescribed);
+        zoned.model.nonlinear.motions = motions.to_vec();
+        let mut run = whole(&zoned);
+        for _ in 0..40 {
+            run.step().unwrap();
+        }
+        let way = 0.3 * run.state().time;
+        for u in &run.state().motion.u {
+            assert!((u - way).abs() < 1e-12 * way, "{m:?}: {u} {way}");
+        }
     }
 }
