@@ -1,4 +1,4 @@
-//! D of contacts between zones: rates that unit forces, constant over an outer step, leave at its end and over it.
+//! D of contacts between zones: mean rates over an outer step that unit forces leave which stand over it.
 
 use carom_dynamics::Driver;
 use carom_dynamics::linearised::{Growth, Origin, Steps};
@@ -7,16 +7,13 @@ use carom_system::{LinkRow, System};
 use crate::cross_zone::{Candidates, CrossZoneContacts, Geometry};
 use crate::error::Error;
 
-/// D of the candidates, and what it is combined from.
+/// D of the candidates.
 pub(crate) struct CrossZoneCompliance {
-    /// Rates at the end of the step and over it that unit forces leave.
-    responses: [Vec<f64>; 2],
-    /// D, and which rows are looked at over the step in it.
-    pub(crate) combined: Vec<f64>,
-    combined_of: Vec<bool>,
+    /// D.
+    pub(crate) responses: Vec<f64>,
     /// D with the own responses of points of rigid bodies a little larger; empty without such candidates.
     softened: Vec<f64>,
-    /// Rows by zone and sizes of the steps of the zones that the responses are of.
+    /// Rows by zone and sizes of the steps of the zones that D is of.
     of: (Vec<Vec<(u32, LinkRow)>>, Vec<f64>),
     pub(crate) rigid: RigidUnknowns,
     /// Changes with D.
@@ -51,8 +48,10 @@ impl CrossZoneContacts {
     ) -> Result<(), Error> {
         let zones = (drivers, origins);
         let (compliance, candidates) = (&mut self.compliance, &self.candidates);
-        compliance.respond(candidates, zones, (substeps, dt))?;
-        compliance.combine((candidates, &self.geometry));
+        if compliance.respond(candidates, zones, (substeps, dt))? {
+            compliance.soften((candidates, &self.geometry));
+            compliance.version += 1;
+        }
         Ok(())
     }
 }
@@ -61,9 +60,7 @@ impl CrossZoneCompliance {
     pub(crate) fn new(system: &System) -> CrossZoneCompliance {
         let (are, growth) = system.rigid_points();
         CrossZoneCompliance {
-            responses: Default::default(),
-            combined: Vec::new(),
-            combined_of: Vec::new(),
+            responses: Vec::new(),
             softened: Vec::new(),
             of: Default::default(),
             rigid: RigidUnknowns { are, growth },
@@ -74,23 +71,25 @@ impl CrossZoneCompliance {
     /// D that is solved with.
     pub(crate) fn matrix(&self) -> &[f64] {
         match self.softened.is_empty() {
-            true => &self.combined,
+            true => &self.responses,
             false => &self.softened,
         }
     }
 
+    /// Makes D where the rows or the sizes of steps have changed; whether they have.
     fn respond(
         &mut self,
         candidates: &Candidates,
         (drivers, origins): (&mut [Driver], &[Origin]),
         (substeps, dt): (&[u32], f64),
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
         let sizes: Vec<f64> = substeps.iter().map(|m| dt / f64::from(*m)).collect();
         if candidates.rows == self.of.0 && sizes == self.of.1 {
-            return Ok(());
+            return Ok(false);
         }
         let n = candidates.forces.len();
-        let mut responses = [vec![0.0; n * n], vec![0.0; n * n]];
+        self.responses.clear();
+        self.responses.resize(n * n, 0.0);
         for (zone, driver) in drivers.iter_mut().enumerate() {
             let rows = &candidates.rows[zone];
             if rows.is_empty() {
@@ -101,44 +100,17 @@ impl CrossZoneCompliance {
                 growth: Growth::Constant,
             };
             let mut linear = driver.linearised(&origins[zone])?;
-            let [ends, ways] = driver.answers(&mut linear, rows, steps)?;
-            for (own, (all, over)) in [ends, ways].iter().zip(responses.iter_mut().zip([1.0, dt])) {
-                for (i, (row, _)) in rows.iter().enumerate() {
-                    for (j, (column, _)) in rows.iter().enumerate() {
-                        let mean = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
-                        all[*row as usize * n + *column as usize] += mean / over;
-                    }
+            let [_, ways] = driver.answers(&mut linear, rows, steps)?;
+            let n_zone = rows.len();
+            for (i, (row, _)) in rows.iter().enumerate() {
+                for (j, (column, _)) in rows.iter().enumerate() {
+                    let mean = 0.5 * (ways[i * n_zone + j] + ways[j * n_zone + i]);
+                    self.responses[*row as usize * n + *column as usize] += mean / dt;
                 }
             }
         }
-        self.responses = responses;
         self.of = (candidates.rows.clone(), sizes);
-        self.combined_of.clear();
-        Ok(())
-    }
-
-    /// D of the candidates from the responses at the end of the step and over it.
-    fn combine(&mut self, (candidates, geometry): (&Candidates, &Geometry)) {
-        let over = &candidates.over;
-        if self.combined_of == *over {
-            return;
-        }
-        let n = over.len();
-        let [ends, means] = &self.responses;
-        self.combined.clear();
-        for i in 0..n {
-            for j in 0..n {
-                let [end, mean] = [ends[i * n + j], means[i * n + j]];
-                self.combined.push(match (over[i], over[j]) {
-                    (true, true) => mean,
-                    (false, false) => end,
-                    _ => 0.5 * (end + mean),
-                });
-            }
-        }
-        self.soften((candidates, geometry));
-        self.combined_of.clone_from(over);
-        self.version += 1;
+        Ok(true)
     }
 
     /// D with the own responses of points of rigid bodies a little larger: more than three such points on a plane have dependent rows, and
@@ -150,8 +122,8 @@ impl CrossZoneCompliance {
         if !own.contains(&true) {
             return;
         }
-        self.softened.extend_from_slice(&self.combined);
-        let n = candidates.over.len();
+        self.softened.extend_from_slice(&self.responses);
+        let n = candidates.forces.len();
         for row in (0..n).filter(|row| own[row / candidates.width()]) {
             self.softened[row * n + row] *= 1.0 + self.rigid.growth;
         }

@@ -6,14 +6,18 @@
 //! * a law in the gap holds at the end of the outer step, `g + Σ_z N_z Δu_z`,
 //! * a law with a compliance for the mean of the outer step, `g + ½ Σ_z N_z Δu_z` and `ġ = Σ_z N_z Δu_z / DT`: the spring of a penalty
 //!   then keeps its energy,
-//! * a law in the rate for `ġ = Σ_z N_z v_z(t + DT)`, and of a point that carried a force in the step before for `Σ_z N_z Δu_z / DT`: a force
-//!   that stands over the step then does no work on a contact that lasts. With the rate at the end, the velocities between would do
-//!   work with it, and several inner steps make energy without bound,
+//! * a law in the rate for `ġ = Σ_z N_z Δu_z / DT` in a point that carried a force in the step before: its force does no work on a contact
+//!   that lasts,
+//! * and in one that did not for `ġ₊ = ġ + (Σ_z N_z Δu_z / DT - ġ)/ϑ`, the rate at the end of one that changes evenly over the step, with
+//!   ϑ = (m - 1 + 2 θ)/(2 m), ½ for θ = ½: the work of the force is then DT P (1 - ϑ) ġ, or with a restitution e DT P (1 - ϑ - ϑ e) ġ, which is
+//!   never positive for ϑ = ½,
 //! * friction for the sliding `Σ_z T_z Δu_z / DT`, so that its work `DT t · q` is never positive.
 //!
+//! With the rate at the end itself, the velocities between would do work with the force, and several inner steps make energy without bound; with
+//! it in some points alone, D would have no sign.
+//!
 //! A pass finds these quantities for the present forces and solves the laws for `q + D Δp`, D that of the linearised zones without their own
-//! contacts; between a row over the step and one at its end the mean of both responses stands for D, which costs passes and changes
-//! no result.
+//! contacts.
 
 mod candidates;
 mod ended;
@@ -141,13 +145,19 @@ impl CrossZoneContacts {
     }
 
     /// Pairs and lists the candidates of an outer step of `dt` from `time` (both s), with the forces of the last one.
-    pub(crate) fn begin(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
+    pub(crate) fn begin(&mut self, drivers: &[Driver], time: f64, (substeps, dt): (&[u32], f64)) {
         self.geometry.gather_start(drivers);
         self.geometry.pair(&self.system, (time, dt));
         self.now.fill([0.0; 2]);
         let rigid = &self.compliance.rigid;
         let of = (&*self.system, &self.geometry, rigid);
         self.candidates.choose(of, &self.state.interface, dt);
+        let part = |(driver, m): (&Driver, &u32)| {
+            let ([start, end], m) = (driver.way_weights(), f64::from(*m));
+            (0.5 * (m - 1.0) + end / (start + end)) / m
+        };
+        let parts: Vec<f64> = drivers.iter().zip(substeps).map(part).collect();
+        self.candidates.weigh(&parts);
         self.change = f64::INFINITY;
     }
 

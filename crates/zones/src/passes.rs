@@ -11,9 +11,8 @@ use carom_system::LinkRow;
 /// Most passes over an outer step.
 pub(crate) const MOST_PASSES: usize = 30;
 
-/// The same where matrices only steer: H does not know that forces of links turn with their rows, and D of contacts between zones has the mean of two
-/// responses in places. Passes gain a factor of two to ten there.
-const MOST_STEERED_PASSES: usize = 60;
+/// The same where links turn: H does not know that their forces turn with the rows, and passes gain a factor of three to ten.
+const MOST_TURNING_PASSES: usize = 60;
 
 /// Why passes do not end where links turn: what they leave out is the force of the link times what it turns its own rows in the step, of order DT².
 const TURNING: &str = "; passes over a link that turns leave out how its forces turn with it, which in this step is too much: take a smaller \
@@ -68,9 +67,9 @@ impl Zones {
 
     /// Most passes over an outer step with multipliers that are linear in it.
     pub(crate) fn most_passes(&self) -> usize {
-        match self.turning.is_none() && self.between.is_none() {
-            true => MOST_PASSES,
-            false => MOST_STEERED_PASSES,
+        match self.turning {
+            None => MOST_PASSES,
+            Some(_) => MOST_TURNING_PASSES,
         }
     }
 

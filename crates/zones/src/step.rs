@@ -11,8 +11,8 @@ impl Zones {
     pub(crate) fn attempt(&mut self) -> Result<(), Error> {
         let inner = self.substeps.iter().any(|m| *m > 1);
         if let Some(between) = &mut self.between {
-            between.begin(&self.drivers, (self.time, self.dt));
             let steps = (&self.substeps[..], self.dt);
+            between.begin(&self.drivers, self.time, steps);
             between.respond(&mut self.drivers, steps, &self.origins)?;
         }
         match self.kind {
@@ -178,7 +178,7 @@ impl Zones {
             }
             driver.complete()?;
             if let Some(between) = &mut self.between {
-                between.candidates.look(k, driver, (j + 1 == m, self.dt));
+                between.candidates.look(k, driver, self.dt);
             }
             if m > 1 {
                 if j == 0 {

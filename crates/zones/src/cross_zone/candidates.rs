@@ -1,10 +1,9 @@
-//! The points of contacts between zones that may carry a force in an outer step: their rows by zone, and what of these their laws look at.
+//! The points of contacts between zones that may carry a force in an outer step: their rows by zone, and their mean rates.
 
-use carom_contact::law::Level;
 use carom_dynamics::Driver;
 use carom_dynamics::paired::{approaches, told};
 use carom_dynamics::state::InterfaceState;
-use carom_system::{LinkRow, System, on};
+use carom_system::{LinkRow, System};
 
 use super::Geometry;
 use crate::compliance::RigidUnknowns;
@@ -18,11 +17,11 @@ pub(crate) struct Candidates {
     pub(crate) tangents: usize,
     /// Whether they carried a force in the step before.
     pub(crate) lasting: Vec<bool>,
-    /// By row, whether what is looked at is the mean rate over the step, and not the one at its end.
-    pub(crate) over: Vec<bool>,
+    /// Part ϑ of the change of a rate that grows evenly over the step in its mean.
+    pub(crate) parts: Vec<f64>,
     /// Forces of the rows in this pass, N.
     pub(crate) forces: Vec<f64>,
-    /// By row, the rate that the forces of this pass leave, m/s.
+    /// By row, the mean rate over the step that the forces of this pass leave, m/s.
     pub(crate) rates: Vec<f64>,
     /// Rows by zone: number and terms.
     pub(crate) rows: Vec<Vec<(u32, LinkRow)>>,
@@ -74,12 +73,25 @@ impl Candidates {
         let carried = carried.map(|&point| state.force[point as usize] != 0.0);
         self.lasting.extend(carried);
         self.let_rigid_begin(geometry, rigid);
-        self.begin_rows(system, state);
+        self.begin_rows(state);
         self.list_rows(geometry);
     }
 
-    /// Lets all points of rigid bodies begin anew where one does: their rows depend on each other, and D of some that last and some that
-    /// begin would contradict itself.
+    /// Parts ϑ of the candidates from those of the zones: the larger one, with which the law holds in the zone that weighs the end of its steps most.
+    pub(super) fn weigh(&mut self, of_zones: &[f64]) {
+        let width = self.width();
+        self.parts.clear();
+        self.parts.resize(self.points.len(), 0.0);
+        for (rows, own) in self.rows.iter().zip(of_zones) {
+            for (row, _) in rows {
+                let part = &mut self.parts[*row as usize / width];
+                *part = part.max(*own);
+            }
+        }
+    }
+
+    /// Lets all points of rigid bodies begin anew where one does: their rows depend on each other, and some that last and some that
+    /// begin would contradict each other.
     fn let_rigid_begin(&mut self, geometry: &Geometry, rigid: &RigidUnknowns) {
         let points = self.points.iter();
         let own: Vec<bool> = points.map(|point| rigid.have(geometry, *point)).collect();
@@ -91,20 +103,14 @@ impl Candidates {
         }
     }
 
-    /// Forces of the rows as they were, and what is looked at in each.
-    fn begin_rows(&mut self, system: &System, state: &InterfaceState) {
+    /// Forces of the rows as they were.
+    fn begin_rows(&mut self, state: &InterfaceState) {
         self.forces.clear();
-        self.over.clear();
-        for (&point, lasts) in self.points.iter().zip(&self.lasting) {
+        for &point in &self.points {
             let at = point as usize;
-            let level = system.point(at).0.law.get().level();
             self.forces.push(state.force[at]);
-            self.over.push(*lasts || level != Level::Rate);
             let friction = state.friction.get(at).copied().unwrap_or_default();
-            for t in friction.iter().take(self.tangents) {
-                self.forces.push(*t);
-                self.over.push(true);
-            }
+            self.forces.extend(friction.iter().take(self.tangents));
         }
         self.rates.clear();
         self.rates.resize(self.forces.len(), 0.0);
@@ -130,15 +136,10 @@ impl Candidates {
         }
     }
 
-    /// Adds the rates of a step of a zone just completed: over the outer step of `dt` (s), or those at its end if it is the `last`.
-    pub(crate) fn look(&mut self, zone: usize, driver: &Driver, (last, dt): (bool, f64)) {
+    /// Adds what a step of a zone just completed has in the mean rates over the outer step of `dt` (s).
+    pub(crate) fn look(&mut self, zone: usize, driver: &Driver, dt: f64) {
         for (row, terms) in &self.rows[zone] {
-            let row = *row as usize;
-            match self.over[row] {
-                true => self.rates[row] += driver.row_way(terms) / dt,
-                false if last => self.rates[row] += on(terms, &driver.ended().motion.v),
-                false => {}
-            }
+            self.rates[*row as usize] += driver.row_way(terms) / dt;
         }
     }
 }

@@ -56,7 +56,7 @@ impl CrossZoneContacts {
     fn describe(&mut self, dt: f64) {
         let (candidates, width) = (&self.candidates, self.candidates.width());
         let n = candidates.forces.len();
-        let matrix = &self.compliance.combined;
+        let matrix = &self.compliance.responses;
         // what the rows do without the forces of the candidates
         let free = |row: usize| {
             let forces = candidates.forces.iter();
@@ -72,10 +72,18 @@ impl CrossZoneContacts {
             let point = point as usize;
             let (contact, place) = system.point(point);
             let (carrier, level) = (&contact.points[place], contact.law.get().level());
-            let (row, [gap, rate]) = (i * width, way_of(level));
-            let rate_free = free(row);
+            let (row, way) = (i * width, way_of(level));
+            let (mean, started) = (free(row), rows.product(point, &start[1]));
+            let begins = level == Level::Rate && !candidates.lasting[i];
+            let (rate, rate_free) = match begins {
+                true => {
+                    let part = candidates.parts[i];
+                    (1.0 / part, started + (mean - started) / part)
+                }
+                false => (1.0, mean),
+            };
             let captured = contact.law.get().capture() * dt;
-            let at_start = rows.gap(point) - captured * rows.product(point, &start[1]);
+            let at_start = rows.gap(point) - captured * started;
             self.solver.candidates.push(Candidate {
                 law: contact.law,
                 local: Local {
@@ -85,12 +93,12 @@ impl CrossZoneContacts {
                     // what lasts has nothing to give back
                     rate: match candidates.lasting[i] {
                         true => 0.0,
-                        false => rows.product(point, &start[1]),
+                        false => started,
                     },
                     start: 0.0,
                     gap_free: match level {
                         Level::Rate => rows.gap(point),
-                        _ => at_start + gap * dt * rate_free,
+                        _ => at_start + way * dt * mean,
                     },
                     dt,
                     tolerance: system.tolerance_at(point),
@@ -103,7 +111,7 @@ impl CrossZoneContacts {
                     false => interface.status[point],
                 },
                 faces_itself: false,
-                instant: [gap, rate],
+                instant: [way, rate],
             });
             if candidates.tangents == 0 {
                 continue;
@@ -148,7 +156,7 @@ impl CrossZoneContacts {
         let changes = found.iter().zip(&self.candidates.forces);
         let changes: Vec<f64> = changes.map(|(new, old)| new - old).collect();
         (0..n).all(|row| {
-            let of_changes = self.compliance.combined[row * n..(row + 1) * n].iter();
+            let of_changes = self.compliance.responses[row * n..(row + 1) * n].iter();
             let rate: f64 = of_changes.zip(&changes).map(|(d, change)| d * change).sum();
             let (point, tangent) = self.candidates.of_row(row);
             let pairing = &self.geometry.pairing;
@@ -160,11 +168,11 @@ impl CrossZoneContacts {
     }
 }
 
-/// The parts of the way and of the rate of the outer step at which a law holds: a law with a compliance for the mean of the step.
-fn way_of(level: Level) -> [f64; 2] {
+/// The part of the way of the outer step at which a law in the gap holds: a law with a compliance for the mean of the step.
+fn way_of(level: Level) -> f64 {
     match level {
-        Level::GapAndRate => [0.5, 1.0],
-        Level::Gap | Level::Rate => [1.0, 1.0],
+        Level::GapAndRate => 0.5,
+        Level::Gap | Level::Rate => 1.0,
     }
 }
 
