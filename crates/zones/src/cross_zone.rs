@@ -6,9 +6,9 @@
 //! * a law in the gap holds at the end of the outer step, `g + Σ_z N_z Δu_z`,
 //! * a law with a compliance for the mean of the outer step, `g + ½ Σ_z N_z Δu_z` and `ġ = Σ_z N_z Δu_z / DT`: the spring of a penalty
 //!   then keeps its energy,
-//! * a law in the rate for `ġ = Σ_z N_z Δu_z / DT` in a point that carried a force in the step before: its force does no work on a contact
-//!   that lasts,
-//! * and in one that did not for `ġ₊ = ġ + (Σ_z N_z Δu_z / DT - ġ)/ϑ`, the rate at the end of one that changes evenly over the step, with
+//! * a law in the rate for `ġ = Σ_z N_z Δu_z / DT` in a point that carried a force in the step before, or that opens at its start: its force
+//!   does no work on a contact that lasts,
+//! * and in one that strikes, ġ < 0, for `ġ₊ = ġ + (Σ_z N_z Δu_z / DT - ġ)/ϑ`, the rate at the end of one that changes evenly over the step, with
 //!   ϑ = (m - 1 + 2 θ)/(2 m), ½ for θ = ½: the work of the force is then DT P (1 - ϑ) ġ, or with a restitution e DT P (1 - ϑ - ϑ e) ġ, which is
 //!   never positive for ϑ = ½,
 //! * friction for the sliding `Σ_z T_z Δu_z / DT`, so that its work `DT t · q` is never positive.

@@ -74,7 +74,8 @@ impl CrossZoneContacts {
             let (carrier, level) = (&contact.points[place], contact.law.get().level());
             let (row, way) = (i * width, way_of(level));
             let (mean, started) = (free(row), rows.product(point, &start[1]));
-            let begins = level == Level::Rate && !candidates.lasting[i];
+            let strikes = !candidates.lasting[i] && started < 0.0;
+            let begins = level == Level::Rate && strikes;
             let (rate, rate_free) = match begins {
                 true => {
                     let part = candidates.parts[i];
@@ -90,11 +91,8 @@ impl CrossZoneContacts {
                     area: carrier.area,
                     share: carrier.share,
                     gap: rows.gap(point),
-                    // what lasts has nothing to give back
-                    rate: match candidates.lasting[i] {
-                        true => 0.0,
-                        false => started,
-                    },
+                    // what lasts or opens has nothing to give back
+                    rate: if strikes { started } else { 0.0 },
                     start: 0.0,
                     gap_free: match level {
                         Level::Rate => rows.gap(point),
