@@ -230,6 +230,22 @@ def test_a_block_slides_until_friction_stops_it():
     assert history.friction[-1, 0] == pytest.approx(np.zeros(2), abs=1e-9)
 
 
+@pytest.mark.parametrize("scheme", [Scheme("newmark"), Scheme("theta", theta=0.5), Scheme("central-difference")])
+def test_a_mass_leaves_a_hertz_point_with_its_speed(scheme):
+    """2 kg at 3 m/s against k = 1e7 N/m^1.5: (5 m v²/(4 k))^(2/5) deep, for 2.943275 δ/v, in 400 steps; (ω dt)² is 1e-4, ω² = 1.5 k √δ/m. The
+    end of a step may miss the largest depth by an eighth of that."""
+    mass, v, k = 2.0, 3.0, 1e7
+    depth = (1.25 * mass * v**2 / k) ** 0.4
+    dt = 2.943275 * depth / v / 400
+    model = carom.Matrices(
+        [[mass]], [[0.0]], [[-1.0]], [0.0], law=Law("hertz", stiffness=k), scheme=scheme, dt=dt, v=[v],
+    )
+    history = model.run(410)
+    assert history.displacement.max() == pytest.approx(depth, rel=2e-4)
+    assert history.force.max() == pytest.approx(k * depth**1.5, rel=3e-4)
+    assert model.velocity == pytest.approx([-v], rel=1e-4)
+
+
 def test_friction_is_larger_at_rest_than_in_motion():
     """1 kg under 10 N is pushed with 0.4 and 0.6 of its weight: below and above the coefficient of sticking, 0.5; it then slides with
     (0.6 - 0.3) g, of which the first step begins at rest. Round-off."""

@@ -19,9 +19,11 @@ pub const BARS: &[Small] = &[
     ("arlequin-bars/case.toml", &[]),
     ("bar-on-wall/case.toml", &[]),
     ("bars-in-zones/case.toml", &[]),
+    ("hertz-points/case.toml", &[]),
     ("mass-on-stop/case.toml", &[]),
     ("oscillators-in-earthquake/case.toml", &[]),
     ("pounding/case.toml", &[]),
+    ("stick-slip/case.toml", &[]),
     ("two-bars-newmark/case.toml", &[]),
     ("two-bars/case.toml", &[]),
 ];
