@@ -11,6 +11,8 @@ use crate::error::Error;
 pub(crate) struct CrossZoneCompliance {
     /// D.
     pub(crate) responses: Vec<f64>,
+    /// By row, the mean rate over the step and the rate at its end that a unit force in each candidate leaves.
+    sums: Vec<[f64; 2]>,
     /// D with the own responses of points of rigid bodies a little larger; empty without such candidates.
     softened: Vec<f64>,
     /// Rows by zone and sizes of the steps of the zones that D is of.
@@ -61,10 +63,21 @@ impl CrossZoneCompliance {
         let (are, growth) = system.rigid_points();
         CrossZoneCompliance {
             responses: Vec::new(),
+            sums: Vec::new(),
             softened: Vec::new(),
             of: Default::default(),
             rigid: RigidUnknowns { are, growth },
             version: 0,
+        }
+    }
+
+    /// ϑ of a row: the part of the change of its rate over the step under forces that stand which its mean has, ½ of a free mass, 1 where waves
+    /// take the motion away at once.
+    pub(crate) fn part(&self, row: usize) -> f64 {
+        let [mean, end] = self.sums[row];
+        match 0.0 < mean && mean < end {
+            true => (mean / end).max(0.5),
+            false => 1.0,
         }
     }
 
@@ -90,6 +103,8 @@ impl CrossZoneCompliance {
         let n = candidates.forces.len();
         self.responses.clear();
         self.responses.resize(n * n, 0.0);
+        self.sums.clear();
+        self.sums.resize(n, [0.0; 2]);
         for (zone, driver) in drivers.iter_mut().enumerate() {
             let rows = &candidates.rows[zone];
             if rows.is_empty() {
@@ -100,12 +115,17 @@ impl CrossZoneCompliance {
                 growth: Growth::Constant,
             };
             let mut linear = driver.linearised(&origins[zone])?;
-            let [_, ways] = driver.answers(&mut linear, rows, steps)?;
-            let n_zone = rows.len();
+            let [ends, ways] = driver.answers(&mut linear, rows, steps)?;
+            let (n_zone, width) = (rows.len(), candidates.width());
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
-                    let mean = 0.5 * (ways[i * n_zone + j] + ways[j * n_zone + i]);
-                    self.responses[*row as usize * n + *column as usize] += mean / dt;
+                    let mean = 0.5 * (ways[i * n_zone + j] + ways[j * n_zone + i]) / dt;
+                    self.responses[*row as usize * n + *column as usize] += mean;
+                    if (*column as usize).is_multiple_of(width) {
+                        let sums = &mut self.sums[*row as usize];
+                        sums[0] += mean;
+                        sums[1] += ends[i * n_zone + j];
+                    }
                 }
             }
         }

@@ -8,9 +8,9 @@
 //!   then keeps its energy,
 //! * a law in the rate for `ġ = Σ_z N_z Δu_z / DT` in a point that carried a force in the step before, or that opens at its start: its force
 //!   does no work on a contact that lasts,
-//! * and in one that strikes, ġ < 0, for `ġ₊ = ġ + (Σ_z N_z Δu_z / DT - ġ)/ϑ`, the rate at the end of one that changes evenly over the step, with
-//!   ϑ = (m - 1 + 2 θ)/(2 m), ½ for θ = ½: the work of the force is then DT P (1 - ϑ) ġ, or with a restitution e DT P (1 - ϑ - ϑ e) ġ, which is
-//!   never positive for ϑ = ½,
+//! * and in one that strikes, ġ < 0, for `ġ₊ = ġ + (Σ_z N_z Δu_z / DT - ġ)/ϑ`: the rate at the end, as far as the forces make it,
+//!   with ϑ the mean over the end of what equal forces in all points do to the rate, ½ of a free mass and 1 where waves take the motion away at once. The work of the
+//!   force is then DT P (1 - ϑ) ġ, which is never positive,
 //! * friction for the sliding `Σ_z T_z Δu_z / DT`, so that its work `DT t · q` is never positive.
 //!
 //! With the rate at the end itself, the velocities between would do work with the force, and several inner steps make energy without bound; with
@@ -145,19 +145,13 @@ impl CrossZoneContacts {
     }
 
     /// Pairs and lists the candidates of an outer step of `dt` from `time` (both s), with the forces of the last one.
-    pub(crate) fn begin(&mut self, drivers: &[Driver], time: f64, (substeps, dt): (&[u32], f64)) {
+    pub(crate) fn begin(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
         self.geometry.gather_start(drivers);
         self.geometry.pair(&self.system, (time, dt));
         self.now.fill([0.0; 2]);
         let rigid = &self.compliance.rigid;
         let of = (&*self.system, &self.geometry, rigid);
         self.candidates.choose(of, &self.state.interface, dt);
-        let part = |(driver, m): (&Driver, &u32)| {
-            let ([start, end], m) = (driver.way_weights(), f64::from(*m));
-            (0.5 * (m - 1.0) + end / (start + end)) / m
-        };
-        let parts: Vec<f64> = drivers.iter().zip(substeps).map(part).collect();
-        self.candidates.weigh(&parts);
         self.change = f64::INFINITY;
     }
 

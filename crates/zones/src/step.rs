@@ -12,7 +12,7 @@ impl Zones {
         let inner = self.substeps.iter().any(|m| *m > 1);
         if let Some(between) = &mut self.between {
             let steps = (&self.substeps[..], self.dt);
-            between.begin(&self.drivers, self.time, steps);
+            between.begin(&self.drivers, (self.time, self.dt));
             between.respond(&mut self.drivers, steps, &self.origins)?;
         }
         match self.kind {

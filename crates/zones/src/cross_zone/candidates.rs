@@ -17,8 +17,6 @@ pub(crate) struct Candidates {
     pub(crate) tangents: usize,
     /// Whether they carried a force in the step before.
     pub(crate) lasting: Vec<bool>,
-    /// Part ϑ of the change of a rate that grows evenly over the step in its mean.
-    pub(crate) parts: Vec<f64>,
     /// Forces of the rows in this pass, N.
     pub(crate) forces: Vec<f64>,
     /// By row, the mean rate over the step that the forces of this pass leave, m/s.
@@ -75,19 +73,6 @@ impl Candidates {
         self.let_rigid_begin(geometry, rigid);
         self.begin_rows(state);
         self.list_rows(geometry);
-    }
-
-    /// Parts ϑ of the candidates from those of the zones: the larger one, with which the law holds in the zone that weighs the end of its steps most.
-    pub(super) fn weigh(&mut self, of_zones: &[f64]) {
-        let width = self.width();
-        self.parts.clear();
-        self.parts.resize(self.points.len(), 0.0);
-        for (rows, own) in self.rows.iter().zip(of_zones) {
-            for (row, _) in rows {
-                let part = &mut self.parts[*row as usize / width];
-                *part = part.max(*own);
-            }
-        }
     }
 
     /// Lets all points of rigid bodies begin anew where one does: their rows depend on each other, and some that last and some that

@@ -78,7 +78,7 @@ impl CrossZoneContacts {
             let begins = level == Level::Rate && strikes;
             let (rate, rate_free) = match begins {
                 true => {
-                    let part = candidates.parts[i];
+                    let part = self.compliance.part(row);
                     (1.0 / part, started + (mean - started) / part)
                 }
                 false => (1.0, mean),
