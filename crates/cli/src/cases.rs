@@ -43,6 +43,7 @@ cases! {
     "mass-on-stop":,
     "hertz-points":,
     "stick-slip":,
+    "sliding-block":,
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,
     "pounding":,

@@ -16,7 +16,8 @@ use crate::blocks::{FACE, RUBBER};
 use crate::build::plane;
 use crate::check::{Check, Row};
 use crate::combinations::Balances;
-use crate::features::{Feature, label, reason, schemes};
+use crate::features::{Feature, label, schemes};
+use crate::reasons::reason;
 
 const FEATURES: [Feature; 6] = [
     Feature::Friction,

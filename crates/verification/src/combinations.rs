@@ -10,7 +10,8 @@ use carom_dynamics::State;
 
 use crate::Error;
 use crate::check::{Check, Row, Size};
-use crate::features::{Built, Feature, label, reason, schemes};
+use crate::features::{Built, Feature, label, schemes};
+use crate::reasons::reason;
 
 /// Round-off in balances, relative.
 const ROUNDING: f64 = 1e-11;

@@ -30,6 +30,7 @@ mod plastic_wave;
 mod plates;
 mod points;
 mod pounding;
+mod reasons;
 mod repeated;
 mod side_by_side;
 mod witness;

@@ -13,8 +13,9 @@ use crate::Error;
 use crate::check::{Check, Row, Size};
 use crate::combinations::Balances;
 use crate::features::{
-    Built, Feature, damped, fly, in_contact, label, preloaded, reason, reduced, schemes, zones,
+    Built, Feature, damped, fly, in_contact, label, preloaded, reduced, schemes, zones,
 };
+use crate::reasons::reason;
 
 /// Features that go on top of each other.
 const PARTS: [Feature; 13] = [

@@ -25,7 +25,8 @@ use crate::Error;
 use crate::bars::CLASSIC;
 use crate::build::{DISPLACEMENT, NOW, PROJECTION, contact, newmark, plane, surface, theta};
 use crate::check::{Check, Row};
-use crate::features::{label, reason, schemes};
+use crate::features::{label, schemes};
+use crate::reasons::reason;
 use carom_contact::Law;
 
 /// What is run both ways.

@@ -3,7 +3,7 @@
 use std::mem::take;
 
 use crate::error::Error;
-use crate::response::OuterResponse;
+use crate::link_solver::OuterResponse;
 use crate::zones::{Kept, Zones};
 use carom_dynamics::{Attempts, Driver, adapt};
 use carom_system::Adaptive;

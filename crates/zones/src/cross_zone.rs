@@ -20,30 +20,30 @@
 //! contacts.
 
 mod candidates;
+mod compliance;
 mod ended;
 mod flights;
+mod geometry;
 mod solve;
 
 pub(crate) use candidates::Candidates;
+use compliance::CrossZoneCompliance;
+use geometry::{Geometry, without_forces};
 
 use std::sync::Arc;
 
-use carom_algebra::rotation::Rotation;
-use carom_contact::{Pairing, Search};
 use serde::{Deserialize, Serialize};
 
-use crate::compliance::CrossZoneCompliance;
 use crate::error::Error;
-use crate::model::{ModelZone, Zoned};
-use crate::places::Places;
+use crate::model::Zoned;
 use carom_dynamics::ContactReport;
 use carom_dynamics::Driver;
-use carom_dynamics::paired::append;
+use carom_dynamics::linearised::Origin;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::InterfaceState;
 use carom_nonsmooth::ContactSolver;
 use carom_schemes::Scheme;
-use carom_system::{Motion, System};
+use carom_system::System;
 
 /// What contacts between zones go on from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -75,25 +75,6 @@ pub(crate) struct CrossZoneContacts {
     now: Vec<[f64; 2]>,
     /// Largest change of a force in the last pass, N.
     change: f64,
-}
-
-/// Where the points of contacts between zones are paired.
-pub(crate) struct Geometry {
-    /// Zone of each unknown of the whole, and its number there.
-    pub(crate) homes: Vec<(usize, u32)>,
-    places: Vec<Places>,
-    search: Vec<Search>,
-    initial: Vec<Pairing>,
-    pub(crate) pairing: Pairing,
-    /// Displacements and velocities of the whole at the start of the step, and at its end.
-    start: [Vec<f64>; 2],
-    end: [Vec<f64>; 2],
-    /// Rotations of the whole at the start of the step.
-    frames: Vec<Rotation>,
-    place: Vec<f64>,
-    still: Vec<f64>,
-    /// Room for nodal forces, N.
-    nodal: Vec<f64>,
 }
 
 impl CrossZoneContacts {
@@ -134,7 +115,7 @@ impl CrossZoneContacts {
             solver: ContactSolver::default(),
             reports: vec![ContactReport::default(); count],
             state: CrossZoneState {
-                interface: ended::without_forces(&system),
+                interface: without_forces(&system),
                 records: Records::of(&system),
                 works: vec![[0.0; 2]; count],
             },
@@ -153,6 +134,25 @@ impl CrossZoneContacts {
         let of = (&*self.system, &self.geometry, rigid);
         self.candidates.choose(of, &self.state.interface, dt);
         self.change = f64::INFINITY;
+    }
+
+    /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
+    ///
+    /// # Errors
+    /// An effective matrix that is not positive definite.
+    pub(crate) fn respond(
+        &mut self,
+        drivers: &mut [Driver],
+        (substeps, dt): (&[u32], f64),
+        origins: &[Origin],
+    ) -> Result<(), Error> {
+        let zones = (drivers, origins);
+        let (compliance, candidates) = (&mut self.compliance, &self.candidates);
+        if compliance.respond(candidates, zones, (substeps, dt))? {
+            compliance.soften((candidates, &self.geometry));
+            compliance.version += 1;
+        }
+        Ok(())
     }
 
     /// Begins a pass.
@@ -189,74 +189,6 @@ impl CrossZoneContacts {
             contact: self.system.point(first).0.name.clone(),
             change: self.change,
             passes,
-        }
-    }
-}
-
-impl Geometry {
-    fn new(system: &System, (drivers, zones): (&[Driver], &[ModelZone])) -> Geometry {
-        let mut taken = vec![false; system.unknowns()];
-        let of_zone = |(driver, zone): (&Driver, &ModelZone)| {
-            Places::new(driver.system(), (&zone.bodies, &[]), system, &mut taken)
-        };
-        let places: Vec<Places> = drivers.iter().zip(zones).map(of_zone).collect();
-        let mut homes = vec![(0, 0); system.unknowns()];
-        for (zone, places) in places.iter().enumerate() {
-            for &(own, whole) in &places.own {
-                homes[whole as usize] = (zone, own);
-            }
-        }
-        let count = system.contacts.len();
-        let zeros = || vec![0.0; system.unknowns()];
-        Geometry {
-            homes,
-            places,
-            search: (0..count).map(|_| Search::default()).collect(),
-            initial: vec![Pairing::default(); count],
-            pairing: Pairing::default(),
-            start: [zeros(), zeros()],
-            end: [zeros(), zeros()],
-            frames: system.initial.frames.clone(),
-            place: zeros(),
-            still: zeros(),
-            nodal: Vec::new(),
-        }
-    }
-
-    /// Takes the motion of the zones for that at the start of the step.
-    fn gather_start(&mut self, drivers: &[Driver]) {
-        gather(drivers, &self.places, &mut self.start);
-        for (driver, places) in drivers.iter().zip(&self.places) {
-            for &(own, whole) in &places.frames {
-                self.frames[whole] = driver.state().motion.frames[own];
-            }
-        }
-    }
-
-    /// Pairs the points for an outer step of `dt` from `time` (both s); 0 for the present instant.
-    fn pair(&mut self, system: &System, (time, dt): (f64, f64)) {
-        self.pairing.clear();
-        self.pairing.span = [0.0; 2];
-        for (k, contact) in system.contacts.iter().enumerate() {
-            let part = contact.law.get().capture() * dt;
-            let [u, v] = &self.start;
-            for (i, place) in self.place.iter_mut().enumerate() {
-                *place = u[i] + part * v[i];
-            }
-            let places = system.places(time + part, &self.place, &self.frames);
-            let kept = (&mut self.search[k], &mut self.initial[k]);
-            append(contact, &places, &mut self.still, kept, &mut self.pairing);
-        }
-    }
-}
-
-/// Displacements and velocities of the whole from those of the zones at the present instant.
-fn gather(drivers: &[Driver], places: &[Places], [u, v]: &mut [Vec<f64>; 2]) {
-    for (driver, places) in drivers.iter().zip(places) {
-        let motion: &Motion = &driver.state().motion;
-        for &(own, whole) in &places.own {
-            u[whole as usize] = motion.u[own as usize];
-            v[whole as usize] = motion.v[own as usize];
         }
     }
 }

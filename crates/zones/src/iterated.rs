@@ -7,7 +7,7 @@
 //! so that its rows need no factor. Its rows join the matrices of the implicit zones ([`Joined`]).
 
 use crate::error::Error;
-use crate::response::answer;
+use crate::joined::answer;
 use crate::turning::ByZone;
 use carom_dynamics::Driver;
 use carom_dynamics::condensed::{Answer, Joined};

@@ -8,13 +8,14 @@
 //! Sources: Gravouil, Combescure (2001); Prakash, Hjelmstad (2004); Ben Dhia et al. (2003), equations (11)-(12). The form
 //! for any pair of schemes with weights of the multipliers in time is this project's.
 
-mod compliance;
 mod control;
 mod cross_zone;
 mod discrete;
 mod ending;
 mod error;
 mod iterated;
+mod joined;
+mod link_solver;
 mod model;
 mod moves;
 mod origin;

@@ -10,47 +10,17 @@ use carom_algebra::dense::DenseCholesky;
 
 use crate::error::Error;
 use crate::iterated::IteratedLinks;
+use crate::joined::{answer, hold_empty_rows};
+use crate::link_solver::{LinkSolver, OuterResponse};
 use crate::model::LinkKind;
 use crate::zones::Zones;
-use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined, Matrix};
-use carom_dynamics::linearised::{Answered, Growth, LinearZone, Steps};
-use carom_dynamics::operator::assembled;
-use carom_system::{LinkRow, System};
+use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
+use carom_dynamics::linearised::{Answered, Growth, Steps};
 
 /// Rows above which H of unequal steps is not made at once. A column costs as much as a product with H, and iterations take some ten of these in
 /// each outer step. H of more rows, up to [`DENSE`], is made once as many products were: no run then costs more than twice what the
 /// better choice would have.
 const FEW: usize = 300;
-
-/// How `H ΔL = r` is solved.
-pub(crate) enum LinkSolver {
-    /// With a factor.
-    Factor(Condensed),
-    /// By iterations.
-    Iterated(Box<IteratedLinks>),
-}
-
-impl LinkSolver {
-    /// Bytes held. `rows`: their number.
-    pub(crate) fn bytes(&self, rows: usize) -> usize {
-        match self {
-            LinkSolver::Factor(factor) => factor.bytes(rows),
-            LinkSolver::Iterated(iterated) => iterated.bytes(rows),
-        }
-    }
-}
-
-/// The part of H of zones with one step, for multipliers at every inner instant.
-#[derive(Default)]
-pub(crate) enum OuterResponse {
-    /// There are no such multipliers.
-    #[default]
-    None,
-    /// The matrix, row-major.
-    Matrix(Vec<f64>),
-    /// By a step of each zone, none for those with several.
-    Steps(Vec<Option<LinearZone>>),
-}
 
 impl Zones {
     /// Solves `H ΔL = r` from now on as with many rows, without H: to compare the two.
@@ -218,39 +188,9 @@ impl Zones {
     }
 }
 
-/// Gives rows that act on nothing that moves a multiplier of nothing: supports hold them already.
-pub(crate) fn hold_empty_rows(count: usize, h: &mut [f64]) {
-    for row in 0..count {
-        let diagonal = &mut h[row * count + row];
-        if *diagonal == 0.0 {
-            *diagonal = 1.0;
-        }
-    }
-}
-
 /// Row of a square matrix, row-major, times a vector.
 fn dot_row(matrix: &[f64], row: usize, x: &[f64]) -> f64 {
     let n = x.len();
     let entries = matrix[row * n..(row + 1) * n].iter().zip(x);
     entries.map(|(a, x)| a * x).sum()
-}
-
-/// A zone in H, with A = `mass` M + `stiffness` K.
-pub(crate) fn answer<'a>(
-    (system, rows): (&'a System, &[(u32, LinkRow)]),
-    [mass, stiffness]: [f64; 2],
-    scale: f64,
-) -> Answer<'a> {
-    let span = 0..system.unknowns();
-    let matrix = match stiffness == 0.0 && system.mass.is_lumped() {
-        true => Matrix::Diagonal(system.mass.lumped.iter().map(|m| mass * m).collect()),
-        false => Matrix::Sparse(assembled(system, &span, [mass, 0.0], &|_| stiffness)),
-    };
-    Answer {
-        system,
-        span,
-        rows: rows.to_vec(),
-        matrix,
-        scale,
-    }
 }

@@ -7,9 +7,10 @@ use carom_algebra::dense::DenseCholesky;
 
 use crate::cross_zone::CrossZoneContacts;
 use crate::error::Error;
+use crate::joined::{answer, hold_empty_rows};
+use crate::link_solver::OuterResponse;
 use crate::model::Zoned;
 use crate::moves::Moves;
-use crate::response::{OuterResponse, answer, hold_empty_rows};
 use crate::stage::StageEnd;
 use crate::turning::{ByZone, TurningLinks};
 use crate::zones::Zones;

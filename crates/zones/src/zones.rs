@@ -5,9 +5,9 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use crate::cross_zone::{CrossZoneContacts, CrossZoneState};
+use crate::link_solver::{LinkSolver, OuterResponse};
 use crate::model::LinkKind;
 use crate::moves::Moves;
-use crate::response::{LinkSolver, OuterResponse};
 use crate::turning::{ByZone, TurningLinks};
 use carom_dynamics::Balance;
 use carom_dynamics::ContactReport;

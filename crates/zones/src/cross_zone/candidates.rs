@@ -5,8 +5,7 @@ use carom_dynamics::paired::{approaches, told};
 use carom_dynamics::state::InterfaceState;
 use carom_system::{LinkRow, System};
 
-use super::Geometry;
-use crate::compliance::RigidUnknowns;
+use super::geometry::{Geometry, RigidUnknowns};
 
 /// Candidates with their rows, of each the normal and with friction its tangents after it.
 #[derive(Default)]

@@ -5,24 +5,15 @@ use std::sync::Arc;
 use carom_contact::Pairing;
 use carom_contact::law::Status;
 use carom_dynamics::records::{Records, Step};
-use carom_dynamics::state::{InterfaceState, empty_state};
+use carom_dynamics::state::InterfaceState;
 use carom_dynamics::{Driver, Rubbing, contact_report, moment};
 use carom_nonsmooth::coulomb::Slip;
 use carom_schemes::step_map::Impulse;
 
-use super::{CrossZoneContacts, gather};
+use super::CrossZoneContacts;
+use super::geometry::{gather, without_forces};
 use crate::stage::StageEnd;
 use crate::whole::take_point;
-use carom_system::System;
-
-/// Points that carry nothing.
-pub(super) fn without_forces(system: &System) -> InterfaceState {
-    let mut interface = empty_state(system).interface;
-    if system.tangents() > 0 {
-        interface.friction.resize(system.points(), [0.0; 2]);
-    }
-    interface
-}
 
 impl CrossZoneContacts {
     /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).

@@ -4,7 +4,8 @@ use carom_dynamics::Driver;
 use carom_dynamics::linearised::{Growth, Origin, Steps};
 use carom_system::{LinkRow, System};
 
-use crate::cross_zone::{Candidates, CrossZoneContacts, Geometry};
+use super::candidates::Candidates;
+use super::geometry::{Geometry, RigidUnknowns};
 use crate::error::Error;
 
 /// D of the candidates.
@@ -22,51 +23,14 @@ pub(crate) struct CrossZoneCompliance {
     pub(crate) version: u64,
 }
 
-/// Which unknowns are those of rigid bodies, and the part by which the own response of their points grows.
-pub(crate) struct RigidUnknowns {
-    are: Vec<bool>,
-    growth: f64,
-}
-
-impl RigidUnknowns {
-    /// Whether a rigid body has part in a point.
-    pub(crate) fn have(&self, geometry: &Geometry, point: u32) -> bool {
-        let (unknowns, _) = geometry.pairing.rows.row(point as usize);
-        let mut unknowns = unknowns.iter();
-        unknowns.any(|unknown| self.are.get(*unknown as usize) == Some(&true))
-    }
-}
-
-impl CrossZoneContacts {
-    /// D of the candidates for an outer step of `dt` (s), where their rows or the sizes of steps have changed.
-    ///
-    /// # Errors
-    /// An effective matrix that is not positive definite.
-    pub(crate) fn respond(
-        &mut self,
-        drivers: &mut [Driver],
-        (substeps, dt): (&[u32], f64),
-        origins: &[Origin],
-    ) -> Result<(), Error> {
-        let zones = (drivers, origins);
-        let (compliance, candidates) = (&mut self.compliance, &self.candidates);
-        if compliance.respond(candidates, zones, (substeps, dt))? {
-            compliance.soften((candidates, &self.geometry));
-            compliance.version += 1;
-        }
-        Ok(())
-    }
-}
-
 impl CrossZoneCompliance {
     pub(crate) fn new(system: &System) -> CrossZoneCompliance {
-        let (are, growth) = system.rigid_points();
         CrossZoneCompliance {
             responses: Vec::new(),
             sums: Vec::new(),
             softened: Vec::new(),
             of: Default::default(),
-            rigid: RigidUnknowns { are, growth },
+            rigid: RigidUnknowns::of(system),
             version: 0,
         }
     }
@@ -90,7 +54,7 @@ impl CrossZoneCompliance {
     }
 
     /// Makes D where the rows or the sizes of steps have changed; whether they have.
-    fn respond(
+    pub(super) fn respond(
         &mut self,
         candidates: &Candidates,
         (drivers, origins): (&mut [Driver], &[Origin]),
@@ -135,7 +99,7 @@ impl CrossZoneCompliance {
 
     /// D with the own responses of points of rigid bodies a little larger: more than three such points on a plane have dependent rows, and
     /// share their force ([`System::rigid_points`](carom_system::System::rigid_points)).
-    fn soften(&mut self, (candidates, geometry): (&Candidates, &Geometry)) {
+    pub(super) fn soften(&mut self, (candidates, geometry): (&Candidates, &Geometry)) {
         self.softened.clear();
         let of_point = |point: &u32| self.rigid.have(geometry, *point);
         let own: Vec<bool> = candidates.points.iter().map(of_point).collect();
