@@ -326,7 +326,9 @@ impl Study {
             verdict_row(&run.variant, mark, inner(cells))
         });
         let wanted = match self.wanted() {
-            Some(_) => " Distance: that of the force from the wanted history, relative, L².",
+            Some(_) => {
+                " Distance: that of the force from the wanted history, relative, L². The errors are those from an exact solution."
+            }
             None => "",
         };
         let fitted = self.fitted_text();
@@ -334,7 +336,7 @@ impl Study {
             " The arrow marks the run that the fit took.".to_owned()
         });
         format!("{}{}<h2>Runs</h2>
-{}<p class=\"faint\">Note: {}. Energy change: energy gained without the work of the loads, relative to the initial energy.{wanted} The errors are those from an exact solution.{arrow}</p>
+{}<p class=\"faint\">Note: {}. Energy change: energy gained without the work of the loads, relative to the initial energy.{wanted}{arrow}</p>
 ",
             each(&fitted, |fitted| format!("<p><b>Fitted: {}</b></p>\n", text(fitted))),
             each(unfitted, |why| format!("<p><b>Nothing was fitted: {}</b></p>\n", text(why))),
