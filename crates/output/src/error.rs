@@ -191,9 +191,6 @@ pub enum Error {
     /// The thread that writes fields ended before its work.
     #[error("the thread that writes fields is gone")]
     Writer,
-    /// The page could not be made from its template.
-    #[error("cannot make the report: {0}")]
-    Template(#[from] minijinja::Error),
     /// The summary could not be put into JSON, or be read from it.
     #[error("summary: {0}")]
     Json(#[from] serde_json::Error),

@@ -16,6 +16,7 @@ pub mod form;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 pub mod history;
+mod html;
 pub mod impacts;
 pub mod maxima;
 pub mod modes;

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use carom_dynamics::{Motion, Order, System};
 use carom_elements::Kind;
 use carom_reduction::Modes;
-use minijinja::{Value, context};
 
 use crate::form::{NOTHING, percent};
+use crate::html::{each, head, text, texts};
 use crate::plot::{Frame, Scene, film_figure, quantity};
-use crate::report::environment;
 use crate::results::outlines::{Outlines, size};
 use crate::rows::Cell;
 use crate::table::{Table, write_csv};
@@ -144,7 +143,7 @@ impl ModeSet<'_> {
             figures.push((number, figure));
         }
         let page = folder.file("report.html")?;
-        atomic::write_text(&page, &self.html(&figures)?)?;
+        atomic::write_text(&page, &self.html(&figures))?;
         Ok(page)
     }
 
@@ -306,29 +305,45 @@ impl ModeSet<'_> {
         Some(film_figure(&scene, &frames))
     }
 
-    fn html(&self, figures: &[(usize, String)]) -> Result<String, Error> {
-        let mut environment = environment()?;
-        environment.add_template("modes.html", include_str!("../templates/modes.html"))?;
+    fn html(&self, figures: &[(usize, String)]) -> String {
         let part = |(number, part): (usize, &Modes)| {
             let table = self.table(part);
-            let own = figures.iter().find(|(figure, _)| *figure == number);
-            context! {
-                name => self.name(part),
-                unknowns => part.unknowns,
-                facts => self.facts(part),
-                heads => table.heads,
-                rows => table.rows,
-                figure => own.map(|(_, svg)| Value::from_safe_string(svg.clone())),
-            }
+            let figure = figures.iter().filter(|(figure, _)| *figure == number);
+            let figure = each(figure, |(_, svg)| format!("<figure>{svg}</figure>\n"));
+            let facts = each(self.facts(part), |fact| {
+                format!("<li>{}</li>\n", text(&fact))
+            });
+            let name = text(&self.name(part));
+            let unknowns = part.unknowns;
+            let table = texts(true, &table.heads, &table.rows);
+            format!(
+                "
+<h2>{name}</h2>
+<ul class=\"plain\">
+<li>{unknowns} unknowns</li>
+{facts}</ul>
+{figure}{table}"
+            )
         };
-        let parts: Vec<Value> = self.parts.iter().enumerate().map(part).collect();
-        let page = environment.get_template("modes.html")?.render(context! {
-            title => self.title,
-            parts,
-            notes => self.notes.to_vec(),
-            version => env!("CARGO_PKG_VERSION"),
-        })?;
-        Ok(page)
+        let title = format!("{}: modes", self.title);
+        let count = match self.parts.len() {
+            1 => "1 part".to_owned(),
+            count => format!("{count} parts"),
+        };
+        let parts = each(self.parts.iter().enumerate(), part);
+        let notes = each(self.notes, |note| format!("{} ", text(note)));
+        format!("{}<header>
+<h1>{}</h1>
+<p class=\"faint\">{count} · carom {}</p>
+</header>
+{parts}
+<p class=\"faint\">Factor: participation Γ = φᵀ M r with φᵀ M φ = 1, and r a motion of the base by 1 m. Mass: effective modal mass Γ² over the mass of the bodies. Contacts are open. {notes}</p>
+</body>
+</html>",
+            head(&title, "", " class=\"broad\""),
+            text(&title),
+            env!("CARGO_PKG_VERSION"),
+        )
     }
 }
 

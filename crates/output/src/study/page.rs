@@ -2,14 +2,12 @@
 
 use std::path::PathBuf;
 
-use minijinja::{Value, context};
-
-use crate::compare::page::inner;
+use crate::compare::page::{inner, reasons, verdict_row, verdict_table};
 use crate::compare::{Done, StepForce};
 use crate::form::NOTHING;
-use crate::page::{PROGRAM, STYLE};
+use crate::html::{self, code, each, head, messages, text, texts, when};
+use crate::page::STYLE;
 use crate::plot::{Logarithmic, Series, quantity, rounded};
-use crate::report::environment;
 use crate::rows::Cell;
 use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
 use crate::table::{Table, write_csv};
@@ -277,52 +275,128 @@ impl Study {
     }
 
     fn html(&self, figure: Option<String>, forces: Option<String>) -> Result<String, Error> {
-        let mut environment = environment()?;
-        environment.add_template("study.html", include_str!("../../templates/study.html"))?;
-        let (table, orders) = (self.table(), self.order_table());
-        let fitted = self.fitted.as_ref();
-        let nearest = fitted.and_then(|fitted| Some(fitted.found.as_ref().ok()?.run));
-        let run = |(k, (run, cells)): (usize, (&Run, &Vec<String>))| {
-            let (verdict, reason) = run.variant.verdict();
-            context! {
-                name => run.variant.name.clone(),
-                page => run.variant.done().is_some(),
-                nearest => nearest == Some(k),
-                cells => inner(cells),
-                verdict,
-                reason,
+        let title = format!("{}: study", self.title);
+        let keys: Vec<&str> = self.keys.iter().map(|(key, _)| key.as_str()).collect();
+        let contact = self
+            .contact()
+            .map(|name| format!(" · contact {}", text(name)));
+        let absent = self.absent();
+        let absent: Vec<String> = absent.iter().map(|absent| code(&absent.text())).collect();
+        let verdicts = self.runs.iter().map(|run| &run.variant);
+        let verdicts = verdicts.map(|variant| (variant.name.as_str(), variant.verdict()));
+        Ok(format!(
+            "{}<header>
+<h1>{}</h1>
+<p class=\"faint\">{} runs over {}{} · carom {}</p>
+</header>
+
+{}{}{}
+{}
+{}
+{}
+{}
+{}</body>
+</html>",
+            head(&title, &format!("\n{STYLE}"), " class=\"broad\""),
+            text(&title),
+            self.runs.len(),
+            text(&keys.join(", ")),
+            contact.unwrap_or_default(),
+            env!("CARGO_PKG_VERSION"),
+            self.runs_html(),
+            self.forces_html(forces),
+            self.envelope_html(),
+            messages("Reasons", &reasons(verdicts)),
+            messages("Empty cells", &absent),
+            self.orders_html(),
+            each(figure, |figure| format!("\n<figure>{figure}</figure>\n")),
+            html::program(&self.plots().texts()?),
+        ))
+    }
+
+    /// What a fit found, and the table of the runs.
+    fn runs_html(&self) -> String {
+        let table = self.table();
+        let found = self.fitted.as_ref().map(|fitted| &fitted.found);
+        let nearest = found.and_then(|found| Some(found.as_ref().ok()?.run));
+        let unfitted = found.and_then(|found| found.as_ref().err());
+        let rows = self.runs.iter().zip(&table.rows).enumerate();
+        let rows = each(rows, |(k, (run, cells))| {
+            let mark = if nearest == Some(k) { "→ " } else { "" };
+            verdict_row(&run.variant, mark, inner(cells))
+        });
+        let wanted = match self.wanted() {
+            Some(_) => {
+                " Distance: that of the force from the wanted history, relative, L². The errors are those from an exact solution."
             }
+            None => "",
         };
+        let fitted = self.fitted_text();
+        let arrow = when(fitted.is_some(), || {
+            " The arrow marks the run that the fit took.".to_owned()
+        });
+        format!("{}{}<h2>Runs</h2>
+{}<p class=\"faint\">Note: {}. Energy change: energy gained without the work of the loads, relative to the initial energy.{wanted}{arrow}</p>
+",
+            each(&fitted, |fitted| format!("<p><b>Fitted: {}</b></p>\n", text(fitted))),
+            each(unfitted, |why| format!("<p><b>Nothing was fitted: {}</b></p>\n", text(why))),
+            verdict_table("Run", inner(&table.heads), &rows),
+            text(RAW_PEAK),
+        )
+    }
+
+    /// The contact forces of the runs.
+    fn forces_html(&self, forces: Option<String>) -> String {
+        if self.contact().is_none() {
+            return String::new();
+        }
+        let (still, live) = match self.wanted() {
+            Some(_) => (
+                "The pale line is the wanted history, the thin one that of the run nearest to it.",
+                "The pale line is the wanted history. ",
+            ),
+            None => ("All runs over each other.", ""),
+        };
+        let still = each(forces, |forces| {
+            format!(
+                "<div class=\"still\"><figure>{forces}</figure>\n<p class=\"faint\">{still}</p></div>\n"
+            )
+        });
+        format!("<section id=\"plots\">
+<h2>Contact force</h2>
+{still}<p class=\"faint live-only\">{live}Point at a curve to read it; drag to zoom, double click to show all. Click at a name to hide or show its curve; at first those of runs graded bad are hidden, which would hide the others.</p>
+<div id=\"plot-study\"></div>
+</section>
+")
+    }
+
+    /// The largest values over all runs.
+    fn envelope_html(&self) -> String {
         let envelope = self.envelope_table();
-        let runs = self.runs.iter().zip(&table.rows).enumerate();
-        let runs: Vec<Value> = runs.map(run).collect();
-        let [head, block] = self.plots().texts()?;
-        let page = environment.get_template("study.html")?.render(context! {
-            title => self.title.clone(),
-            keys => self.keys.iter().map(|(key, _)| key.clone()).collect::<Vec<_>>(),
-            abscissa => self.abscissa_text(),
-            heads => inner(&table.heads),
-            runs,
-            order_heads => orders.heads[1..].to_vec(),
-            orders => orders.rows,
-            envelope_heads => envelope.heads,
-            envelope => envelope.rows,
-            grid => self.series().len() > 1,
-            contact => self.contact(),
-            raw_peak => RAW_PEAK,
-            version => env!("CARGO_PKG_VERSION"),
-            figure => figure.map(Value::from_safe_string),
-            forces => forces.map(Value::from_safe_string),
-            wanted => self.wanted().is_some(),
-            fitted => self.fitted_text(),
-            unfitted => fitted.and_then(|fitted| fitted.found.as_ref().err().cloned()),
-            absent => self.absent().iter().map(Absent::text).collect::<Vec<_>>(),
-            head => Value::from_safe_string(head),
-            block => Value::from_safe_string(block),
-            program => Value::from_safe_string(PROGRAM.to_owned()),
-            program_style => Value::from_safe_string(STYLE.to_owned()),
-        })?;
-        Ok(page)
+        when(!envelope.rows.is_empty(), || {
+            let table = texts(false, &envelope.heads, &envelope.rows);
+            format!(
+                "\n<h2>Envelope of the runs</h2>\n{table}<p class=\"faint\">Largest values of an impact over all runs, and smallest margins, each with the run that governs. Contacts by themselves are in envelope.csv. A dash under a margin: the level names no allowable; under friction: no contact of it has any.</p>\n"
+            )
+        })
+    }
+
+    /// The orders against step or key.
+    fn orders_html(&self) -> String {
+        let orders = self.order_table();
+        let grid = match self.series().len() > 1 {
+            true => "One order for each combination of the values after the first axis. ",
+            false => "",
+        };
+        when(!orders.rows.is_empty(), || {
+            let heads = orders.heads.iter().skip(1).cloned();
+            let heads = ["Quantity".to_owned()].into_iter().chain(heads);
+            let table = texts(false, &heads.collect::<Vec<_>>(), &orders.rows);
+            let abscissa = text(&self.abscissa_text());
+            format!(
+                "\n<h2>Orders against {abscissa}</h2>\n{table}<p class=\"faint\">Order: exponent of a power law through the errors, by least squares of the logarithms; error bar: its standard error. {grid}Errors are relative distances from the exact solution; without an exact solution they are differences of neighbouring runs. A dash under extrapolated: an error, whose limit is zero, or no three runs in a constant ratio; under saturated: the error falls up to the finest run.</p>\n"
+            )
+        })
     }
 }
 
