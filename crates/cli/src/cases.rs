@@ -43,7 +43,7 @@ cases! {
     "mass-on-stop":,
     "hertz-points":,
     "stick-slip":,
-    "sliding-block":,
+    "sliding-block": "blocks.msh",
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,
     "pounding":,

@@ -92,6 +92,8 @@ impl Zoned {
     fn staged(&self) -> Model {
         let mut model = self.model.clone();
         model.scheme = Scheme::Theta(Theta { theta: 0.5 });
+        // the dynamics of zones know no forces of named supports either
+        model.named_supports.clear();
         for contact in &mut model.contacts {
             if contact.law.get().projects() {
                 contact.law = Law::Displacement(Displacement { projection: false });
