@@ -1,5 +1,5 @@
 // Two blocks on each other: 1 m x 0.2 m with 10 x 2 quadrilaterals, 0.4 m x 0.1 m with 6 x 2.
-// gmsh -2 blocks.geo
+// gmsh -2 blocks.geo -o blocks.msh
 
 Point(1) = {0, -0.2, 0}; Point(2) = {1, -0.2, 0}; Point(3) = {1, 0, 0}; Point(4) = {0, 0, 0};
 Line(1) = {1, 2}; Line(2) = {2, 3}; Line(3) = {3, 4}; Line(4) = {4, 1};

@@ -2,7 +2,7 @@
 //! chapter` makes the measured tables of the manual anew, `cargo xtask pages` the texts that pages include.
 //!
 //! Quick things first: what the repository holds (`files`), the documentation (`docs`), who uses whom (`layers`,
-//! `circles`), names that were retired (`words`), the lock file of the Python package (`lock`), format,
+//! `circles`), the owners of the step (`owners`), names that were retired (`words`), the lock file of the Python package (`lock`), format,
 //! lints, pages of the API, one build of the dependencies for all commands (`builds`), then the README's test command, and reports in a browser
 //! where one is installed (`page`).
 
@@ -18,6 +18,7 @@ mod expected;
 mod files;
 mod layers;
 mod lock;
+mod owners;
 mod page;
 mod pages;
 mod place;
@@ -35,11 +36,12 @@ const DOC: &str = "cargo doc --release --workspace --no-deps";
 /// A named check: what is wrong, one line each, or nothing.
 type Check = (&'static str, fn(&Path) -> Vec<String>);
 
-const CHECKS: [Check; 12] = [
+const CHECKS: [Check; 13] = [
     ("files", files::check),
     ("documentation", docs::check),
     ("layers", layers::check),
     ("circles", circles::check),
+    ("owners", owners::check),
     ("words", words::check),
     ("lock", lock::check),
     ("format", |root| command(root, "cargo fmt --all -- --check")),

@@ -197,7 +197,7 @@ fn cases_of_solids_beside_other_bodies_go_on_with_the_same_bytes() {
 
 #[test]
 fn no_case_of_the_project_is_forgotten() {
-    let lists = [BARS, THIN, PLANE, STATIC, SOLID, MIXED, LARGE];
+    let lists = [BARS, MASSES, THIN, PLANE, STATIC, SOLID, MIXED, LARGE];
     let own = lists.into_iter().flatten().map(|(name, _)| *name);
     let own: BTreeSet<String> = own.map(str::to_owned).collect();
     let mut found = BTreeSet::new();
