@@ -149,9 +149,19 @@ struct Counts {
     all: usize,
 }
 
-/// Of each pair how many combinations with a scheme and a law run, and how often each reason refuses one.
-fn counted() -> Result<(Vec<(Pair, Counts)>, BTreeMap<String, usize>), Error> {
-    let (mut pairs, mut reasons) = (Vec::new(), BTreeMap::new());
+/// What became of all combinations.
+#[derive(Default)]
+struct Counted {
+    pairs: Vec<(Pair, Counts)>,
+    /// How often each reason refuses one.
+    reasons: BTreeMap<String, usize>,
+}
+
+fn counted() -> Result<Counted, Error> {
+    let Counted {
+        mut pairs,
+        mut reasons,
+    } = Counted::default();
     for pair in Pair::all() {
         let mut counts = Counts::default();
         for scheme in schemes() {
@@ -168,7 +178,7 @@ fn counted() -> Result<(Vec<(Pair, Counts)>, BTreeMap<String, usize>), Error> {
         }
         pairs.push((pair, counts));
     }
-    Ok((pairs, reasons))
+    Ok(Counted { pairs, reasons })
 }
 
 /// The table of the manual.
@@ -176,7 +186,7 @@ fn counted() -> Result<(Vec<(Pair, Counts)>, BTreeMap<String, usize>), Error> {
 /// # Errors
 /// A model that cannot be built and is not refused.
 pub fn table() -> Result<String, Error> {
-    let (pairs, reasons) = counted()?;
+    let Counted { pairs, reasons } = counted()?;
     let titles = PARTS.map(Feature::name);
     let mut text = format!(
         "| | {} |\n|---|{}\n",

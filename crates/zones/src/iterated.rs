@@ -73,7 +73,7 @@ impl IteratedLinks {
     /// An effective matrix that is not positive definite.
     pub(crate) fn solve(
         &mut self,
-        (drivers, rows): (&mut [Driver], &[Vec<(u32, LinkRow)>]),
+        (drivers, rows): (&mut [Driver], &ByZone),
         (r, norms): (&mut [f64], &[f64]),
         goal: f64,
     ) -> Result<u64, Error> {
@@ -109,11 +109,7 @@ impl IteratedLinks {
     }
 
     /// H times the direction.
-    fn multiply(
-        &mut self,
-        drivers: &mut [Driver],
-        rows: &[Vec<(u32, LinkRow)>],
-    ) -> Result<(), Error> {
+    fn multiply(&mut self, drivers: &mut [Driver], rows: &ByZone) -> Result<(), Error> {
         self.image.fill(0.0);
         for (k, driver) in drivers.iter_mut().enumerate() {
             let [ends, ways] = &mut self.of_zone;

@@ -141,7 +141,7 @@ impl Zones {
                 Ok(())
             }
             Some(LinkSolver::Iterated(iterated)) => {
-                let zones = (&mut self.drivers[..], &self.rows[..]);
+                let zones = (&mut self.drivers[..], &self.rows);
                 let solved = iterated.solve(zones, (&mut self.defect, &self.norms), goal);
                 solved.map(|products| self.products[1] += products)
             }

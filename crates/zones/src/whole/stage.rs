@@ -27,7 +27,7 @@ impl Whole {
             .contacts
             .clone_from(&state.records.contacts);
         let ledger = &state.ledger;
-        let left = [ledger.tolerated.clone(), ledger.rounding.clone()];
+        let left = [ledger.tolerated, ledger.rounding];
         self.state
             .ledger
             .gather(ledger.initial, ledger.balance, left);
