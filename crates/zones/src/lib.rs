@@ -1,4 +1,4 @@
-//! Zones: groups of bodies with their own scheme and step, which meet only in the multipliers of their links.
+//! Zones: groups of bodies with their own scheme and step, which meet in the multipliers of their links and in contacts between them (`cross_zone`).
 //!
 //! A link gives rows `Σ C v = 0` between velocities of zones at the same instant, and its multipliers L act as `Cᵀ L`. The
 //! condensed problem of an outer step is `H ΔL = Σ C v`, with H the velocity that multipliers leave in the rows when

@@ -144,6 +144,14 @@ fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
             "its multipliers ask for M⁻¹ of both sides at the end of one step, and the steps of the zones end apart; take node or mortar",
         );
     }
+    let apart = |zone: &ModelZone| zone.substeps > 1 || zone.far.is_some_and(|far| far > 1);
+    let joined = !zoned.links.is_empty() || !zoned.model.constraints.is_empty();
+    if zoned.kind == LinkKind::GravouilCombescure && joined && zoned.zones.iter().any(apart) {
+        return Some(
+            "with link = \"gravouil-combescure\" the step of the outer zones is over before the inner ones begin, Σ C v_j = 0 at each t_j, and a force \
+             that stands over the outer step is known at its end; take link = \"prakash-hjelmstad\"",
+        );
+    }
     if of_model.massless {
         return Some(
             "nodes without mass stay in contact by a law in the gap at the end of each step of their zone, and this contact has one at the end of the \

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::model::Zoned;
 use crate::turning::ByZone;
+use carom_arlequin::Term;
 use carom_system::{LinkRow, ModelConstraint, System};
 
 impl Zoned {
@@ -47,49 +48,47 @@ impl Zoned {
     /// A constraint of an unknown that a node does not have.
     pub(crate) fn rows(&self, systems: &[Arc<System>]) -> Result<ByZone, Error> {
         let mut by_zone: ByZone = vec![Vec::new(); systems.len()];
-        let mut number = 0;
-        for row in self.links.iter().flat_map(|link| {
-            let zones = link.zones;
-            link.rows.iter().map(move |row| (row, zones))
-        }) {
-            let (row, zones) = row;
-            for (zone, sign, terms) in [(zones[0], 1.0, &row.inner), (zones[1], -1.0, &row.outer)] {
-                let system = &systems[zone];
-                let term = |term: &carom_arlequin::Term| {
-                    let node = system.number[term.node as usize];
-                    let unknown = system.unknowns.first(node) as u32 + term.component;
-                    (unknown, sign * term.coefficient)
-                };
-                by_zone[zone].push((number, terms.iter().map(term).collect()));
+        let mut numbers = 0..;
+        for link in &self.links {
+            for (row, number) in link.rows.iter().zip(&mut numbers) {
+                let sides = [(1.0, &row.inner), (-1.0, &row.outer)];
+                for (zone, (sign, terms)) in link.zones.into_iter().zip(sides) {
+                    let terms = terms.iter().map(|term| own(&systems[zone], sign, term));
+                    by_zone[zone].push((number, terms.collect()));
+                }
             }
-            number += 1;
         }
         let of_node = self.zones_of_nodes();
         for constraint in &self.model.constraints {
-            for row in &constraint.rows {
+            for (row, number) in constraint.rows.iter().zip(&mut numbers) {
                 let mut of_zones: Vec<LinkRow> = vec![Vec::new(); systems.len()];
                 for &(node, kind, c) in row {
-                    let zone = of_node[node as usize];
-                    let unknown = zone.and_then(|zone| {
+                    let unknown = of_node[node as usize].and_then(|zone| {
                         let system = &systems[zone];
                         let own = system.number[node as usize];
                         Some((zone, system.unknowns.find(own, kind)? as u32))
                     });
-                    let (zone, unknown) =
-                        unknown.ok_or_else(|| carom_system::Error::NoSuchUnknown {
-                            constraint: constraint.name.clone(),
-                            node,
-                        })?;
+                    let missing = || carom_system::Error::NoSuchUnknown {
+                        constraint: constraint.name.clone(),
+                        node,
+                    };
+                    let (zone, unknown) = unknown.ok_or_else(missing)?;
                     of_zones[zone].push((unknown, c));
                 }
-                for (own, terms) in by_zone.iter_mut().zip(of_zones) {
+                for (rows, terms) in by_zone.iter_mut().zip(of_zones) {
                     if !terms.is_empty() {
-                        own.push((number, terms));
+                        rows.push((number, terms));
                     }
                 }
-                number += 1;
             }
         }
         Ok(by_zone)
     }
+}
+
+/// A term of a link on the unknowns of a zone.
+fn own(system: &System, sign: f64, term: &Term) -> (u32, f64) {
+    let node = system.number[term.node as usize];
+    let unknown = system.unknowns.first(node) as u32 + term.component;
+    (unknown, sign * term.coefficient)
 }

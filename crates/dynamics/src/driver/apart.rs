@@ -112,7 +112,8 @@ impl Driver {
         }));
         friction.clear();
         if width > 1 {
-            self.contacts.tangential(&self.attempt, along, friction);
+            self.contacts
+                .describe_friction(&self.attempt, along, friction);
         }
         self.contacts.candidate_data = data;
     }

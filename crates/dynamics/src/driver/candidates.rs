@@ -76,7 +76,7 @@ impl Driver {
         }
     }
 
-    /// Forces and statuses of the candidates, whose forces are added to the begun solve.
+    /// Forces and statuses of the candidates; their forces are added to the solve between its forward and its backward sweep.
     fn solve_candidates(&mut self) -> Result<(), Error> {
         if self.contacts.candidates.is_empty() {
             self.contacts.release(&mut self.attempt);

@@ -457,7 +457,7 @@ impl Attempt {
 }
 
 impl Stages {
-    /// Nᵀ P of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
+    /// Nᵀ P + Tᵀ t of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
     /// uses it.
     pub(super) fn spread(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
         let f = &mut attempt.vectors.contact;

@@ -59,7 +59,8 @@ impl Driver {
             self.parts
                 .free_along(&self.attempt, number, &self.contacts.stacked, last(number))
         };
-        self.contacts.tangential(&self.attempt, free, &mut friction);
+        self.contacts
+            .describe_friction(&self.attempt, free, &mut friction);
         if iterate {
             let solved =
                 self.contacts
@@ -187,9 +188,9 @@ impl Driver {
 }
 
 impl Contacts {
-    /// Writes what friction adds to each candidate.
+    /// Writes what the solver knows of the friction of each candidate.
     /// `free`: product of a stacked row with the motion of the iteration without contact forces.
-    pub(super) fn tangential(
+    pub(super) fn describe_friction(
         &self,
         attempt: &Attempt,
         free: impl Fn(u32) -> f64,

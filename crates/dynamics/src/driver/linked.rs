@@ -43,7 +43,7 @@ impl Driver {
         }
     }
 
-    /// Adds forces of other rows to those of the links, N.
+    /// Adds forces of other rows to those of the links, N: of contacts between zones.
     pub fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
         if self.links.force.is_empty() {
             self.links.force.resize(self.attempt.system.unknowns(), 0.0);

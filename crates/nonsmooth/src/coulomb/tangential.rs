@@ -25,11 +25,11 @@ pub struct Tangential {
     pub sliding: Option<f64>,
     /// q_f, in m or m/s, along each tangent; the second is not used in the plane.
     pub free: [f64; 2],
-    /// Status at the end of the last step: a guess.
+    /// Status at the end of the last iteration or step: a guess.
     pub slip: Slip,
-    /// Tangential force of the last step, N: a point that slipped is first tried in this direction.
+    /// Tangential force of the last iteration or step, N: a point that slipped is first tried in this direction.
     pub force: [f64; 2],
-    /// Normal force of the last step, N: sweeps begin with it.
+    /// Normal force of the last iteration or step, N: sweeps begin with it.
     #[serde(default)]
     pub pressed: f64,
 }

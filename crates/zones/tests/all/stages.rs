@@ -13,7 +13,7 @@ use carom_dynamics::{
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 use carom_system::{Prescribed, Support};
-use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
+use carom_zones::{LinkKind, ModelZone, Whole, Zoned, Zones};
 
 const RUBBER: Elastic = Elastic {
     density: 1000.0,
@@ -266,4 +266,22 @@ fn supports_that_move_carry_what_links_and_constraints_join() {
             assert!((u - way).abs() < 1e-12 * way, "{m:?}: {u} {way}");
         }
     }
+}
+
+/// Multipliers at inner instants are found before the outer step has its end, on which contacts between zones depend.
+#[test]
+fn contacts_between_zones_and_rows_at_inner_instants_are_refused() {
+    let mut zoned = stacked(3, (0.0, 0.0), false);
+    zoned.kind = LinkKind::GravouilCombescure;
+    assert!(Zones::new(&zoned).is_ok(), "no rows");
+    let (one, other) = (0, zoned.model.mesh.nodes.len() as u32 - 1);
+    let along = Kind::Translation(0);
+    zoned.model.constraints = vec![ModelConstraint {
+        name: "hook".into(),
+        rows: vec![vec![(one, along, 1.0), (other, along, -1.0)]],
+    }];
+    let error = Zones::new(&zoned).map(|_| ()).unwrap_err().to_string();
+    assert!(error.contains("prakash-hjelmstad"), "{error}");
+    zoned.kind = LinkKind::PrakashHjelmstad;
+    assert!(Zones::new(&zoned).is_ok());
 }
