@@ -204,6 +204,10 @@ impl Contacts {
         contact: usize,
         report: &mut ContactReport,
     ) {
+        // how many tangents there are is asked of all contacts
+        if attempt.next.interface.friction.is_empty() {
+            return;
+        }
         let rubbing = Rubbing {
             tangents: &self.pairing.tangents[..attempt.system.tangents()],
             forces: &attempt.next.interface.friction,
