@@ -22,6 +22,7 @@ impl FrictionLaw for Coulomb {
         "coulomb"
     }
 
+    #[inline]
     fn sticks(&self) -> f64 {
         self.0
     }

@@ -34,6 +34,14 @@ macro_rules! friction_laws {
                     $(Friction::$law(law) => law,)*
                 }
             }
+
+            /// Whether there is any. Steps ask all contacts for it.
+            #[inline]
+            pub fn acts(&self) -> bool {
+                match self {
+                    $(Friction::$law(law) => law.sticks() > 0.0,)*
+                }
+            }
         }
     };
 }
@@ -50,11 +58,6 @@ impl Friction {
     pub fn kinetic(&self) -> Option<f64> {
         let law = self.get();
         Some(law.slides(f64::INFINITY)).filter(|kinetic| *kinetic < law.sticks())
-    }
-
-    /// Whether there is any.
-    pub fn acts(&self) -> bool {
-        self.get().sticks() > 0.0
     }
 }
 

@@ -58,6 +58,7 @@ impl FrictionLaw for StaticKinetic {
         "static-kinetic"
     }
 
+    #[inline]
     fn sticks(&self) -> f64 {
         self.at_rest
     }
