@@ -150,19 +150,24 @@ impl InterfaceState {
     ) {
         self.friction.resize(before.friction.len(), [0.0; 2]);
         for point in points {
-            self.force[point] = before.force[point];
-            if let Some(friction) = self.friction.get_mut(point) {
-                *friction = before.friction[point];
-            }
-            self.carried[point] = before.carried[point];
-            self.gap[point] = before.gap[point];
-            self.rate[point] = before.rate[point];
-            self.opening[point] = before.opening[point];
-            self.status[point] = before.status[point];
-            self.watched[point] = before.watched[point];
-            self.crush[point] = before.crush[point];
-            self.landed[point] = before.landed[point];
+            self.take_point(point, (before, point));
         }
+    }
+
+    /// Makes a point what one of another state is, but for the time without force. Friction is taken where both have any.
+    pub fn take_point(&mut self, to: usize, (other, from): (&InterfaceState, usize)) {
+        self.force[to] = other.force[from];
+        if let (Some(own), Some(friction)) = (self.friction.get_mut(to), other.friction.get(from)) {
+            *own = *friction;
+        }
+        self.carried[to] = other.carried[from];
+        self.gap[to] = other.gap[from];
+        self.rate[to] = other.rate[from];
+        self.opening[to] = other.opening[from];
+        self.status[to] = other.status[from];
+        self.watched[to] = other.watched[from];
+        self.crush[to] = other.crush[from];
+        self.landed[to] = other.landed[from];
     }
 
     /// Takes the force of a point.

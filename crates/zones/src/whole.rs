@@ -24,7 +24,6 @@ use carom_dynamics::{Balance, Impact, Ledger, Tolerated};
 use carom_dynamics::{ContactReport, ContactSample, Notices, StepReport};
 use carom_dynamics::{FailedProblem, Stepper};
 use carom_system::System;
-pub(crate) use gathered::take_point;
 use gathered::{add_forces, forces_mut, take_motion, take_points};
 
 /// Zones with the model as one.
@@ -241,7 +240,7 @@ impl Whole {
             whole.friction.resize(whole.force.len(), [0.0; 2]);
         }
         for (own, point) in points.enumerate() {
-            take_point((whole, point), (&between.interface, own));
+            whole.take_point(point, (&between.interface, own));
         }
     }
 

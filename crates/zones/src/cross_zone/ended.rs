@@ -13,7 +13,6 @@ use carom_schemes::step_map::Impulse;
 use super::CrossZoneContacts;
 use super::geometry::{gather, without_forces};
 use crate::stage::StageEnd;
-use crate::whole::take_point;
 
 impl CrossZoneContacts {
     /// Makes the forces those of the state at `time`, the end of an outer step of `dt` (both s).
@@ -132,7 +131,7 @@ impl CrossZoneContacts {
         self.restart(drivers);
         let own = &mut self.state.interface;
         for (to, from) in end.between.iter().enumerate() {
-            take_point((own, to), (&end.whole.interface, *from));
+            own.take_point(to, (&end.whole.interface, *from));
         }
         for (record, &contact) in self.state.records.contacts.iter_mut().zip(&self.contacts) {
             record.clone_from(&end.whole.records.contacts[contact]);

@@ -44,26 +44,7 @@ pub(super) fn take_points(
         whole.friction.resize(whole.force.len(), [0.0; 2]);
     }
     for &(from, to) in &places.points {
-        take_point((whole, to as usize), (interface, from as usize));
-    }
-}
-
-/// Makes a point of the whole what it is where it is solved for.
-pub(crate) fn take_point(
-    (whole, to): (&mut InterfaceState, usize),
-    (own, from): (&InterfaceState, usize),
-) {
-    whole.force[to] = own.force[from];
-    whole.carried[to] = own.carried[from];
-    whole.gap[to] = own.gap[from];
-    whole.rate[to] = own.rate[from];
-    whole.opening[to] = own.opening[from];
-    whole.landed[to] = own.landed[from];
-    whole.status[to] = own.status[from];
-    whole.watched[to] = own.watched[from];
-    whole.crush[to] = own.crush[from];
-    if let Some(friction) = own.friction.get(from) {
-        whole.friction[to] = *friction;
+        whole.take_point(to as usize, (interface, from as usize));
     }
 }
 

@@ -4,7 +4,7 @@ use carom_dynamics::Driver;
 use carom_dynamics::state::State;
 
 use super::Whole;
-use super::gathered::{add_forces, forces_mut, take_motion, take_point, take_points};
+use super::gathered::{add_forces, forces_mut, take_motion, take_points};
 use crate::error::Error;
 use crate::places::Places;
 use crate::stage::{Stage, StageEnd};
@@ -88,7 +88,7 @@ impl Whole {
         }
         for &(to, from) in &places.points {
             let point = (&self.state.interface, from as usize);
-            take_point((&mut state.interface, to as usize), point);
+            state.interface.take_point(to as usize, point);
         }
         for (record, &contact) in state.records.contacts.iter_mut().zip(contacts) {
             record.clone_from(&self.state.records.contacts[contact]);

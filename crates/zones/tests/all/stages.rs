@@ -4,7 +4,7 @@ use carom_algebra::unknowns::Kind;
 use carom_arlequin::trace;
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
-use carom_contact::{Law, Sliding};
+use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Amplitude, Model, ModelBody, ModelConstraint, ModelContact, ModelLink, ModelTarget, Preload,
@@ -284,4 +284,52 @@ fn contacts_between_zones_and_rows_at_inner_instants_are_refused() {
     assert!(error.contains("prakash-hjelmstad"), "{error}");
     zoned.kind = LinkKind::PrakashHjelmstad;
     assert!(Zones::new(&zoned).is_ok());
+}
+
+/// Friction of a contact between zones, none of one inside a zone, and the other way round: both carry their forces over the end of the stage.
+#[test]
+fn contacts_with_and_without_friction_go_on_from_one_static_stage() {
+    for frictions in [[0.3, 0.0], [0.0, 0.3]] {
+        let mut zoned = stacked(3, (frictions[0], 0.0), true);
+        let lid = ModelTarget::Rigid(
+            Plane {
+                point: [0.0, -0.2, 0.0],
+                normal: [0.0, 1.0, 0.0],
+            }
+            .into(),
+        );
+        let body = &zoned.model.bodies[0].spec;
+        let group = &zoned.model.mesh.groups["below.bottom"];
+        let foot = Surface::new(&zoned.model.mesh, group, &body.cells).unwrap();
+        let law = Law::Displacement(Displacement::default());
+        let mut floor = ModelContact::new("floor", foot, lid, law);
+        floor.friction = frictions[1].into();
+        floor.sliding = Sliding::Finite;
+        zoned.model.contacts.push(floor);
+        // the floor carries what the support did; it holds one node along, so that nothing slides away
+        zoned.model.supports[0].fix = [true, false, true];
+        if frictions[0] == 0.0 {
+            let nodes = zoned
+                .model
+                .mesh
+                .group_nodes(&zoned.model.mesh.groups["above.left"]);
+            zoned.model.supports.push(Support {
+                fix: [true, false, false],
+                ..held(nodes)
+            });
+        }
+        let mut run = whole(&zoned);
+        for _ in 0..22 {
+            run.step().unwrap();
+        }
+        let weight = |body: f64| body * RUBBER.density * GRAVITY;
+        let found = [0, 1].map(|k| run.report().contacts[k].resultant[1]);
+        let expected = [weight(0.4 * 0.2), weight(0.4 * 0.2 + 0.2)];
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 1e-8 * expected,
+                "{frictions:?}: {found} {expected}"
+            );
+        }
+    }
 }
