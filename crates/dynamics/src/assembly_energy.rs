@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::records::ContactRecord;
 use crate::sum::Sum;
 use crate::system::System;
+use carom_system::Assembly;
 
 /// Part of the kinetic energy in the frame of the model of which another frame leaves rounding: some 1e-15 in a step, times the
 /// thousand of which a gain would be told.
@@ -19,10 +20,12 @@ const ROUNDING: f64 = 1e-11;
 /// Energies of all assemblies.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AssemblyEnergies {
-    /// By assembly; empty before the dynamics, and where zones step by themselves.
+    /// By assembly; empty before the dynamics.
     pub all: Vec<AssemblyEnergy>,
     /// Largest so far, of all together, J.
     pub largest: f64,
+    /// Whether the scheme of a zone balances an energy with a lag or a memory, which is known of the whole alone.
+    pub of_whole_alone: bool,
 }
 
 /// Energy of one assembly.
@@ -46,10 +49,23 @@ pub struct AssemblyEnergy {
     pub dissipated: f64,
     /// Largest kinetic energy so far in the frame of the model, J.
     pub in_frame_of_model: f64,
+    /// Its motion now, in the frame of the model.
+    motion: AssemblyMotion,
     taken: Sum,
     damped: Sum,
     given: Sum,
     /// Momentum at the start, N s.
+    momentum: [f64; 3],
+}
+
+/// What moves in an assembly.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct AssemblyMotion {
+    /// Kinetic energy, J.
+    kinetic: f64,
+    /// The term in |a|²_M of the energy that the scheme balances, J.
+    of_scheme: f64,
+    /// Momentum, N s.
     momentum: [f64; 3],
 }
 
@@ -83,6 +99,45 @@ impl AssemblyEnergy {
         self.taken.get()
     }
 
+    /// Begins with the motion as it is.
+    fn begin(&mut self, assembly: &Assembly) {
+        let motion = self.motion;
+        let kinetic = assembly.kinetic(motion.kinetic, &motion.momentum);
+        self.in_frame_of_model = motion.kinetic;
+        self.momentum = motion.momentum;
+        self.start = kinetic + self.taken.get();
+        self.close(kinetic, [0.0; 3]);
+        // the scheme's own term belongs to the start
+        self.start += motion.of_scheme;
+    }
+
+    /// The end of a step with the motion as it is, and `contacts`, the work of its contacts so far, less what friction took, J; returns its energy without
+    /// what materials gave, J.
+    fn end(&mut self, assembly: &Assembly, contacts: f64) -> f64 {
+        let motion = self.motion;
+        // the impulse from outside is the change of the momentum
+        let carried =
+            (0..3).map(|i| assembly.velocity[i] * (motion.momentum[i] - self.momentum[i]));
+        let given = self.given.get() - carried.sum::<f64>();
+        let kinetic = assembly.kinetic(motion.kinetic, &motion.momentum);
+        self.in_frame_of_model = self.in_frame_of_model.max(motion.kinetic);
+        self.close(kinetic, [motion.of_scheme, given, contacts]);
+        kinetic + self.taken.get().max(0.0)
+    }
+
+    /// Adds the motion and the works so far of one that belongs to it.
+    fn include(&mut self, own: &AssemblyEnergy) {
+        let (all, part) = (&mut self.motion, &own.motion);
+        all.kinetic += part.kinetic;
+        all.of_scheme += part.of_scheme;
+        for i in 0..3 {
+            all.momentum[i] += part.momentum[i];
+        }
+        self.taken.add(own.taken.get());
+        self.damped.add(own.damped.get());
+        self.given.add(own.given.get());
+    }
+
     /// Adds the motion of its parts.
     fn take(&mut self, motion: &PartMotion) {
         self.taken.add(motion.taken);
@@ -110,7 +165,7 @@ impl AssemblyEnergies {
     pub(crate) fn start(system: &System, part: impl Fn(usize) -> PartMotion) -> AssemblyEnergies {
         let mut energies = AssemblyEnergies {
             all: vec![AssemblyEnergy::default(); system.assemblies.all.len()],
-            largest: 0.0,
+            ..AssemblyEnergies::default()
         };
         for (assembly, energy) in system.assemblies.all.iter().zip(&mut energies.all) {
             let mut sum = PartMotion::default();
@@ -118,13 +173,8 @@ impl AssemblyEnergies {
                 energy.take(&motion);
                 sum.include(&motion);
             }
-            let kinetic = assembly.kinetic(sum.kinetic, &sum.momentum);
-            energy.in_frame_of_model = sum.kinetic;
-            energy.momentum = sum.momentum;
-            energy.start = kinetic + energy.taken.get();
-            energy.close(kinetic, [0.0; 3]);
-            // the scheme's own term belongs to the start
-            energy.start += sum.of_scheme;
+            energy.motion = sum.motion();
+            energy.begin(assembly);
             energies.largest += energy.largest;
         }
         energies
@@ -133,7 +183,7 @@ impl AssemblyEnergies {
     /// Makes this that of the state before the step.
     pub(crate) fn follow(&mut self, before: &AssemblyEnergies) {
         self.all.clone_from(&before.all);
-        self.largest = before.largest;
+        (self.largest, self.of_whole_alone) = (before.largest, before.of_whole_alone);
     }
 
     /// Adds the end of a step. `parts`: each connected part; `obstacles`: work in the step of the obstacle of each contact, J.
@@ -157,30 +207,61 @@ impl AssemblyEnergies {
                 energy.given.add(obstacles[contact]);
                 contacts += records[contact].work_with_friction();
             }
-            // the impulse from outside is the change of the momentum
-            let carried =
-                (0..3).map(|i| assembly.velocity[i] * (all.momentum[i] - energy.momentum[i]));
-            let given = energy.given.get() - carried.sum::<f64>();
-            let kinetic = assembly.kinetic(all.kinetic, &all.momentum);
-            energy.in_frame_of_model = energy.in_frame_of_model.max(all.kinetic);
-            energy.close(kinetic, [all.of_scheme, given, contacts]);
-            sum += kinetic + energy.taken.get().max(0.0);
+            energy.motion = all.motion();
+            sum += energy.end(assembly, contacts);
         }
         self.largest = self.largest.max(sum);
     }
 
-    /// That of the assembly of a contact; none where the system was stepped by zones, which do not gather them.
+    /// Those of a model whose zones step apart, from theirs. `zones`: the assemblies of the zones, each with the one of the model that it belongs to; `works`: of contacts and
+    /// links so far by assembly of the model, less what friction took, J.
+    pub fn gather<'a>(
+        &mut self,
+        system: &System,
+        zones: impl Iterator<Item = (usize, &'a AssemblyEnergy)>,
+        works: &[f64],
+    ) {
+        let begins = self.all.is_empty();
+        self.all
+            .resize(system.assemblies.all.len(), AssemblyEnergy::default());
+        for energy in &mut self.all {
+            energy.motion = AssemblyMotion::default();
+            (energy.taken, energy.damped, energy.given) = Default::default();
+        }
+        for (number, own) in zones {
+            self.all[number].include(own);
+        }
+        let mut sum = 0.0;
+        let assemblies = system.assemblies.all.iter();
+        for ((energy, assembly), works) in self.all.iter_mut().zip(assemblies).zip(works) {
+            if begins {
+                energy.begin(assembly);
+            }
+            sum += energy.end(assembly, *works);
+        }
+        self.largest = self.largest.max(sum);
+    }
+
+    /// That of the assembly of a contact; none in a static stage.
     pub fn of_contact(&self, system: &System, contact: usize) -> Option<&AssemblyEnergy> {
         self.all.get(system.assemblies.of_contact(system, contact))
     }
 
-    /// Whether they are of this system; none of zones that step by themselves.
+    /// Whether they are of this system; none before the dynamics.
     pub(crate) fn are_of(&self, system: &System) -> bool {
         [0, system.assemblies.all.len()].contains(&self.all.len())
     }
 }
 
 impl PartMotion {
+    fn motion(&self) -> AssemblyMotion {
+        AssemblyMotion {
+            kinetic: self.kinetic,
+            of_scheme: self.of_scheme,
+            momentum: self.momentum,
+        }
+    }
+
     /// Adds what is told of another part.
     fn include(&mut self, other: &PartMotion) {
         self.kinetic += other.kinetic;

@@ -187,7 +187,7 @@ impl ContactRecord {
     }
 
     /// Work beside friction, and what friction took, since the start of the dynamics, J, as one work.
-    pub(crate) fn work_with_friction(&self) -> f64 {
+    pub fn work_with_friction(&self) -> f64 {
         self.work() - (self.rubbed.get() - self.rubbed_before)
     }
 

@@ -4,12 +4,18 @@ use carom_algebra::unknowns::Kind;
 use carom_contact::{Obstacle, Shape, Target};
 
 use crate::assemblies::{Assemblies, Assembly};
+use crate::model::ModelLink;
 use crate::system::System;
 
 impl Assemblies {
     /// Those of a system.
     pub(crate) fn of(system: &System) -> Assemblies {
-        let mut assemblies = joined(system);
+        Assemblies::linked(system, &[])
+    }
+
+    /// The same with links that the system itself does not have.
+    pub(crate) fn linked(system: &System, links: &[ModelLink]) -> Assemblies {
+        let mut assemblies = joined(system, links);
         for (number, contact) in system.contacts.iter().enumerate() {
             if let Some(&body) = contact.bodies.first() {
                 let assembly = assemblies.of_part[system.part_of_body[body]];
@@ -53,7 +59,7 @@ impl Assemblies {
 }
 
 /// The parts that contacts and links join, without masses and frames.
-fn joined(system: &System) -> Assemblies {
+fn joined(system: &System, links: &[ModelLink]) -> Assemblies {
     let mut first: Vec<usize> = (0..system.parts.len()).collect();
     let mut join = |parts: &mut dyn Iterator<Item = usize>| {
         let Some(one) = parts.next() else { return };
@@ -79,6 +85,12 @@ fn joined(system: &System) -> Assemblies {
                 .iter()
                 .map(|&(unknown, _)| system.part_of(unknown as usize)),
         );
+    }
+    for row in links.iter().flat_map(|link| &link.rows) {
+        join(&mut row.inner.iter().chain(&row.outer).map(|term| {
+            let node = system.number[term.node as usize];
+            system.part_of(system.unknowns.first(node))
+        }));
     }
     let mut assemblies = Assemblies {
         all: Vec::new(),

@@ -69,14 +69,17 @@ impl System {
     }
 
     /// All bodies and contacts of a model in one numbering, to look at and not to be driven: whether the scheme takes the
-    /// laws, the masses and the step is not asked. A model in zones has no scheme as a whole.
+    /// laws, the masses and the step is not asked. A model in zones has no scheme as a whole. Its links tell which bodies act on each other; their rows are
+    /// known to the zones.
     ///
     /// # Errors
     /// A body that cannot be built.
     pub fn whole(mut model: Model) -> Result<Arc<System>, Error> {
         // their forces are known to the drivers of the zones
         model.named_supports.clear();
-        let (system, ..) = System::assemble(model)?;
+        let links = std::mem::take(&mut model.links);
+        let (mut system, ..) = System::assemble(model)?;
+        system.assemblies = Assemblies::linked(&system, &links);
         Ok(Arc::new(system))
     }
 

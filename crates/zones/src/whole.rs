@@ -20,11 +20,13 @@ use crate::zones::{Zones, ZonesState};
 use carom_dynamics::Costs;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::{State, empty_state};
-use carom_dynamics::{Balance, Impact, Ledger, Tolerated};
+use carom_dynamics::{AssemblyEnergies, Balance, Impact, Ledger, Tolerated};
 use carom_dynamics::{ContactReport, ContactSample, Notices, StepReport};
 use carom_dynamics::{FailedProblem, Stepper};
 use carom_system::System;
-use gathered::{add_forces, forces_mut, take_motion, take_points};
+use gathered::{
+    add_forces, assemblies_of_links, assemblies_of_zones, forces_mut, take_motion, take_points,
+};
 
 /// Zones with the model as one.
 pub struct Whole {
@@ -34,6 +36,9 @@ pub struct Whole {
     system: Arc<System>,
     names: Vec<String>,
     links: Vec<[usize; 2]>,
+    /// The assembly of the model to which each one of each zone belongs, and that of the rows of each link and constraint.
+    of_assembly: Vec<Vec<usize>>,
+    of_link: Vec<usize>,
     /// Bodies of each zone.
     bodies: Vec<Vec<usize>>,
     places: Vec<Places>,
@@ -54,6 +59,8 @@ struct Saved {
     stage: Option<State>,
     zones: ZonesState,
     ledger: Ledger,
+    /// Energies of the assemblies of the model.
+    assemblies: AssemblyEnergies,
     /// Impacts of all zones in the order in which they were told.
     impacts: Vec<Impact>,
 }
@@ -105,6 +112,7 @@ impl Whole {
         zones.resume(&saved.zones);
         let mut whole = Whole::around(zones, zoned, system);
         whole.state.ledger = saved.ledger;
+        whole.state.assemblies = saved.assemblies;
         whole.state.records.impacts = saved.impacts;
         let drivers = whole.zones.drivers.iter();
         whole.impacts = drivers.map(|d| d.state().records.impacts.len()).collect();
@@ -124,14 +132,17 @@ impl Whole {
             let parts = (&zone.bodies[..], &contacts[..]);
             Places::new(driver.system(), parts, &system, &mut taken)
         });
+        let places: Vec<Places> = places.collect();
         let mut state = empty_state(&system);
         state.motion.link_force = vec![0.0; system.unknowns()];
         state.records = Records::of(&system);
         Whole {
+            of_assembly: assemblies_of_zones(&zones, (&places, &system)),
+            of_link: assemblies_of_links(&zones, (&places, &system)),
             names: zoned.zones.iter().map(|zone| zone.name.clone()).collect(),
             links: zoned.zones_of_rows(),
             bodies: zoned.zones.iter().map(|zone| zone.bodies.clone()).collect(),
-            places: places.collect(),
+            places,
             impacts: vec![0; zones.drivers.len()],
             impacts_between: 0,
             placed: vec![0; zones.drivers.len()],
@@ -206,10 +217,39 @@ impl Whole {
             left[1].add(&ledger.rounding);
         }
         self.state.ledger.gather(initial, balance, left);
+        self.gather_assemblies();
         let zones = self.zones.drivers.iter();
         let exchange = &mut self.state.exchange;
         exchange.gather(zones.map(|driver| &driver.state().exchange));
         self.tell();
+    }
+
+    /// Energies of the assemblies of the model from those of the zones.
+    pub(super) fn gather_assemblies(&mut self) {
+        let (system, assemblies) = (&*self.system, &self.system.assemblies);
+        let mut works = vec![0.0; assemblies.all.len()];
+        for (assembly, works) in assemblies.all.iter().zip(&mut works) {
+            let contacts = assembly.contacts.iter();
+            let records = &self.state.records.contacts;
+            *works = contacts.map(|&k| records[k].work_with_friction()).sum();
+        }
+        for (link, work) in self.zones.link_works().iter().enumerate() {
+            works[self.of_link[link]] += work;
+        }
+        let zones = self.zones.drivers.iter().zip(&self.of_assembly);
+        let zones = zones.flat_map(|(driver, of)| {
+            let energies = driver.state().assemblies.all.iter();
+            of.iter().copied().zip(energies)
+        });
+        self.state.assemblies.gather(system, zones, &works);
+        self.state.assemblies.of_whole_alone = self.zones.drivers.iter().any(|driver| {
+            let identity = driver
+                .system()
+                .scheme
+                .get()
+                .energy_identity(driver.system().dt);
+            identity.is_none_or(|identity| identity.lag != 0.0 || identity.memory != 0.0)
+        });
     }
 
     /// Motion from the first zone that has a node, forces from all.
@@ -413,6 +453,7 @@ impl Stepper for Whole {
             stage: (self.stage.0.as_ref()).map(|stage| stage.driver.state().clone()),
             zones: self.zones.state(),
             ledger: self.state.ledger.clone(),
+            assemblies: self.state.assemblies.clone(),
             impacts: self.state.records.impacts.clone(),
         };
         postcard::to_stdvec(&saved).map_err(|cause| carom_dynamics::Error::State {

@@ -145,7 +145,8 @@ fn of_zones(zoned: &Zoned, model: Model) -> Result<(Arc<System>, bool), carom_zo
         Some(system) => Ok((system, false)),
         None => {
             zoned.check_stage()?;
-            Ok((System::whole(model)?, true))
+            let links = zoned.links.clone();
+            Ok((System::whole(Model { links, ..model })?, true))
         }
     }
 }

@@ -64,3 +64,61 @@ time = {{ end = "0.5 ms", step = "8 us", scheme.theta = {{}} }}
         assert!(residual < 1e-9, "{young}: {residual:e}");
     }
 }
+
+/// Two blocks that strike each other, the lower one tied to a third, each in a zone of its own. What the contact took and made is judged by the energy of these
+/// three, in their own frame: a body far away, slow or fast, and a motion of all change no grade, and values by rounding of velocities of some
+/// hundred m/s, 1e-9.
+#[test]
+fn grades_of_zones_that_step_apart_are_those_of_what_acts_on_each_other() {
+    let blocks = |[x, y]: [f64; 2], far: Option<f64>| {
+        let mut text = format!(
+            r#"
+carom = 1
+mesh.generate.foot.rectangle = {{ origin = [0.0, -0.4], size = [1.0, 0.2], elements = [5, 1] }}
+mesh.generate.low.rectangle = {{ origin = [0.0, -0.2], size = [1.0, 0.2], elements = [5, 2] }}
+mesh.generate.up.rectangle = {{ origin = [0.31, 0.001], size = [0.4, 0.1], elements = [3, 2] }}
+material.m = {{ density = 1000.0, elastic = {{ young = "1 GPa", poisson = 0.2 }} }}
+contact.c = {{ secondary = "up.bottom", primary = "low.top", law.velocity.capture = "half", friction.coulomb = 0.2, sliding = "finite" }}
+interface.tie = {{ inner = "low", outer = "foot" }}
+zone.a = {{ bodies = ["low"], substeps = 2 }}
+zone.b = {{ bodies = ["up"], substeps = 3 }}
+time = {{ end = "4 ms", step = "0.1 ms", scheme.theta.theta = 0.5 }}
+body.foot = {{ region = "foot", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [{x}, {y}] }}
+body.low = {{ region = "low", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [{x}, {y}] }}
+body.up = {{ region = "up", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [{}, {}] }}
+"#,
+            x + 0.5,
+            y - 1.0
+        );
+        let bodies = match far {
+            None => r#"zone.o = { bodies = ["foot"] }"#.to_owned(),
+            Some(speed) => format!(
+                r#"
+mesh.generate.far.rectangle = {{ origin = [50.0, 0.0], size = [2.0, 2.0], elements = [2, 2] }}
+zone.o = {{ bodies = ["foot", "far"] }}
+body.far = {{ region = "far", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [{speed}, {speed}] }}
+"#
+            ),
+        };
+        text += &bodies;
+        result(&text).0
+    };
+    let alone = blocks([0.0, 0.0], None);
+    let lost = alone.verdict.line("contact-loss").unwrap();
+    assert!(lost.value > 0.01, "{lost:?}");
+    for changed in [
+        blocks([100.0, 50.0], None),
+        blocks([0.0, 0.0], Some(0.0)),
+        blocks([0.0, 0.0], Some(300.0)),
+    ] {
+        for name in ["contact-loss", "contact-work", "energy-gain", "scheme-loss"] {
+            let [one, other] = [&alone, &changed].map(|summary| summary.verdict.line(name));
+            let (one, other) = (one.unwrap(), other.unwrap());
+            assert_eq!(one.grade, other.grade, "{name}: {one:?} {other:?}");
+            assert!(
+                (one.value - other.value).abs() < 1e-9,
+                "{name}: {one:?} {other:?}"
+            );
+        }
+    }
+}

@@ -98,8 +98,7 @@ pub(crate) struct Last {
 const ROUNDING: f64 = 1e-4;
 
 impl Last {
-    /// Largest energy of the run, J, in the frames of the assemblies; of static stages, and of zones that step by themselves, that of
-    /// the ledger.
+    /// Largest energy of the run, J, in the frames of the assemblies; of static stages that of the ledger.
     pub(crate) fn largest_energy(&self) -> f64 {
         match self.assemblies.largest {
             own if own > 0.0 => own,

@@ -59,6 +59,8 @@ impl Whole {
             zones: states,
         };
         self.zones.begin_dynamics(&end)?;
+        self.state.records.begin_dynamics();
+        self.gather_assemblies();
         self.stage.1 = stage.driver.costs();
         Ok(())
     }

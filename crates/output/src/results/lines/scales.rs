@@ -52,6 +52,7 @@ impl Evidence<'_> {
         // the energy that a scheme with a lag or a memory balances is known of the whole alone
         let scheme = self.system.scheme.get().energy_identity(self.system.dt);
         let plain = scheme.is_some_and(|identity| identity.lag == 0.0 && identity.memory == 0.0);
+        let plain = plain && !self.last.assemblies.of_whole_alone;
         if energies.len() < 2 || self.system.schemes.len() > 1 || !plain {
             return (whole, String::new());
         }
