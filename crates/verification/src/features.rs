@@ -274,7 +274,7 @@ impl Built {
             return Ok(Built::One(system, None));
         }
         zoned.systems()?;
-        let system = System::whole(zoned.model.clone())?;
+        let system = zoned.whole()?;
         Ok(Built::Zoned(Box::new(zoned), system))
     }
 

@@ -225,9 +225,9 @@ fn whole(model: Model, substeps: [u32; 2]) -> Result<Whole, Error> {
         zones: vec![zone(0), zone(1)],
         links: Vec::new(),
         kind: LinkKind::PrakashHjelmstad,
-        model: model.clone(),
+        model,
     };
-    Ok(Whole::new(&zoned, System::whole(model)?)?)
+    Ok(Whole::new(&zoned, zoned.whole()?)?)
 }
 
 pub(crate) const CHECK: Check = Check {

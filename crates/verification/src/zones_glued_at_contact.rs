@@ -225,7 +225,7 @@ fn apart(kind: LinkKind) -> Result<Vec<Row>, Error> {
     };
     let mut zoned = problem.zoned()?;
     (zoned.kind, zoned.zones[0].substeps) = (kind, 4);
-    let whole = System::whole(zoned.model.clone())?;
+    let whole = zoned.whole()?;
     let mut run = Whole::new(&zoned, whole)?;
     let (dt, gap) = (zoned.model.dt, 1e-5 / CLASSIC.speed);
     let (mut forces, mut steps) = (0.0, 0);

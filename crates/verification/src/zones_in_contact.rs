@@ -108,7 +108,7 @@ fn adaptive(name: &str, schemes: [Scheme; 2]) -> Result<Vec<Row>, Error> {
         patience: 10,
     });
     let zoned = zoned(model.clone(), schemes, 4);
-    let mut whole = Whole::new(&zoned, System::whole(model.clone())?)?;
+    let mut whole = Whole::new(&zoned, zoned.whole()?)?;
     let mut single = Driver::new(crate::witness::system(model)?)?;
     let (history, figures) = run_stepper(&case, &mut whole)?;
     run_stepper(&case, &mut single)?;
@@ -166,7 +166,7 @@ fn in_zones(
     let mut stepper: Box<dyn Stepper> = match (zoned.together()?, substeps) {
         (Some(system), 1) => Box::new(Driver::new(system)?),
         (None, 1) => return Err(Error::Apart),
-        _ => Box::new(Whole::new(&zoned, System::whole(model)?)?),
+        _ => Box::new(Whole::new(&zoned, zoned.whole()?)?),
     };
     let (history, figures) = run_stepper(case, &mut *stepper)?;
     Ok((history, figures, stepper.state().clone()))

@@ -79,6 +79,17 @@ impl Zoned {
         self.contacts().iter().enumerate().map(system).collect()
     }
 
+    /// The whole model as one system, with assemblies joined by links: what [`crate::Whole`] tells and grades
+    /// runs by. It takes no step.
+    ///
+    /// # Errors
+    /// A model that cannot be built.
+    pub fn whole(&self) -> Result<Arc<System>, Error> {
+        let links = self.links.clone();
+        let model = self.model.clone();
+        Ok(System::whole(Model { links, ..model })?)
+    }
+
     /// For each contact of the model, whether its sides may move far along each other ([`Model::slide_far`]); those between zones may.
     pub fn slide_far(&self) -> Vec<bool> {
         let mut far = vec![true; self.model.contacts.len()];

@@ -66,7 +66,7 @@ struct Saved {
 }
 
 impl Whole {
-    /// Starts the zones of a model. `system`: [`System::whole`] of the same model.
+    /// Starts the zones of a model. `system`: [`Zoned::whole`] of the same model.
     ///
     /// # Errors
     /// As [`Zones::new`].

@@ -111,7 +111,7 @@ fn two_bars() -> Zoned {
 /// A run with its folder, its histories and the zones at the end.
 fn run(folder: &Path, end: f64) -> (Summary, Recorder, Whole) {
     let zoned = two_bars();
-    let system = System::whole(zoned.model.clone()).unwrap();
+    let system = zoned.whole().unwrap();
     let mut settings = models::settings(folder);
     settings.reference = Some(models::exact(end + system.dt));
     settings.fields = models::all_fields(0.5 * models::duration());
@@ -320,7 +320,7 @@ fn the_checkpoint_of_a_run_in_zones_is_what_it_goes_on_from() {
     let (_, _, whole) = run(&through, end);
     let saved = checkpoint::read(&cut.join(checkpoint::name(0))).unwrap();
     let zoned = two_bars();
-    let system = System::whole(zoned.model.clone()).unwrap();
+    let system = zoned.whole().unwrap();
     let mut resumed = Whole::resume(&zoned, system, &saved.state).unwrap();
     assert!(resumed.state().time < 0.6 * end);
     march(&mut resumed, end, &mut [], &|| false).unwrap();

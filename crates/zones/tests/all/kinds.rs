@@ -107,7 +107,7 @@ fn beams(m: u32) -> Zoned {
 fn passes_over_beams_are_the_one_system_of_them() {
     let zoned = beams(1);
     let mut driver = Driver::new(zoned.together().unwrap().unwrap()).unwrap();
-    let whole = System::whole(zoned.model.clone()).unwrap();
+    let whole = zoned.whole().unwrap();
     let mut run = Whole::new(&zoned, whole.clone()).unwrap();
     let mut touched = 0;
     for _ in 0..100 {
@@ -233,7 +233,7 @@ fn a_rigid_body_turns_in_inner_steps_as_by_itself() {
         model: Model::new(vec![top, bar], mesh, scheme, dt),
     };
     let mut driver = Driver::new(System::new(alone).unwrap()).unwrap();
-    let whole = System::whole(zoned.model.clone()).unwrap();
+    let whole = zoned.whole().unwrap();
     let mut run = Whole::new(&zoned, whole.clone()).unwrap();
     for _ in 0..50 {
         (0..4).for_each(|_| driver.step().unwrap());

@@ -73,7 +73,7 @@ fn hanging(m: [u32; 2]) -> Zoned {
 }
 
 fn whole(zoned: &Zoned) -> Whole {
-    let system = System::whole(zoned.model.clone()).unwrap();
+    let system = zoned.whole().unwrap();
     Whole::new(zoned, system).unwrap()
 }
 
@@ -125,7 +125,7 @@ fn a_run_that_was_cut_about_a_static_stage_ends_in_the_same_bytes() {
         saved.push(run.saved().unwrap());
     }
     for cut in [1, 3, 4] {
-        let system = System::whole(zoned.model.clone()).unwrap();
+        let system = zoned.whole().unwrap();
         let mut resumed = Whole::resume(&zoned, system, &saved[cut]).unwrap();
         for _ in cut..6 {
             resumed.step().unwrap();

@@ -212,7 +212,7 @@ fn thrown(dt: f64) -> Zoned {
 #[test]
 fn a_run_that_was_cut_while_links_turn_ends_in_the_same_bytes() {
     let zoned = thrown(1e-3);
-    let system = System::whole(zoned.model.clone()).unwrap();
+    let system = zoned.whole().unwrap();
     let mut whole = Whole::new(&zoned, Arc::clone(&system)).unwrap();
     let (mut resumed, mut most) = (Vec::new(), 0);
     for step in 0..60 {
@@ -281,7 +281,7 @@ fn a_shock_that_turns_a_link_too_far_in_a_step_is_told_or_taken_in_halves() {
 #[test]
 fn a_step_taken_twice_while_links_turn_is_the_step_taken_once() {
     let zoned = thrown(1e-3);
-    let system = System::whole(zoned.model.clone()).unwrap();
+    let system = zoned.whole().unwrap();
     let run = |forced: bool| {
         let mut whole = Whole::new(&zoned, Arc::clone(&system)).unwrap();
         if forced {

@@ -84,7 +84,7 @@ pub fn bar() -> Zoned {
 }
 
 pub fn whole(zoned: &Zoned) -> Whole {
-    Whole::new(zoned, System::whole(zoned.model.clone()).unwrap()).unwrap()
+    Whole::new(zoned, zoned.whole().unwrap()).unwrap()
 }
 
 #[test]
@@ -159,7 +159,7 @@ fn the_whole_is_the_zones_node_by_node_and_contact_by_contact() {
 #[test]
 fn a_run_in_zones_that_was_cut_ends_in_the_same_bytes() {
     let zoned = bar();
-    let system = System::whole(zoned.model.clone()).unwrap();
+    let system = zoned.whole().unwrap();
     let mut whole = Whole::new(&zoned, Arc::clone(&system)).unwrap();
     let mut resumed = Vec::new();
     // before, in and after the contact of some 215 steps
@@ -187,7 +187,7 @@ fn bytes_of_another_model_are_refused() {
     let mut other = bar();
     other.links[0].rows.clear();
     let refused = |zoned: &Zoned, bytes: &[u8]| {
-        let system = System::whole(zoned.model.clone()).unwrap();
+        let system = zoned.whole().unwrap();
         match Whole::resume(zoned, system, bytes) {
             Ok(_) => String::new(),
             Err(error) => error.to_string(),
