@@ -1,11 +1,66 @@
 //! One entry to the interface problem, with and without friction.
 
+use std::ops::Range;
+
+use carom_algebra::{Error as AlgebraError, Interrupt};
 use carom_laws::Status;
 use thiserror::Error as ThisError;
 
 use crate::Compliance;
 use crate::coulomb::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
 use crate::interface::{Candidate, Failure, Interface};
+
+/// The candidates of a problem, and what friction adds to each.
+#[derive(Clone, Copy)]
+pub struct Candidates<'a> {
+    /// The candidates.
+    pub normal: &'a [Candidate],
+    /// Friction of each; empty without friction.
+    pub friction: &'a [Tangential],
+}
+
+/// The same, kept.
+#[derive(Clone, Debug, Default)]
+pub struct CandidateData {
+    /// The candidates.
+    pub normal: Vec<Candidate>,
+    /// Friction of each; empty without friction.
+    pub friction: Vec<Tangential>,
+}
+
+impl CandidateData {
+    /// Leaves none.
+    pub fn clear(&mut self) {
+        self.normal.clear();
+        self.friction.clear();
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn all(&self) -> Candidates<'_> {
+        self.within(0..self.normal.len())
+    }
+
+    /// Some that follow each other.
+    #[must_use]
+    pub fn within(&self, range: Range<usize>) -> Candidates<'_> {
+        Candidates {
+            normal: &self.normal[range.clone()],
+            friction: self.friction.get(range).unwrap_or_default(),
+        }
+    }
+
+    /// Those at some places.
+    #[must_use]
+    pub fn at(&self, places: &[u32]) -> CandidateData {
+        let places = || places.iter().map(|&place| place as usize);
+        let friction = places().filter_map(|place| self.friction.get(place));
+        CandidateData {
+            normal: places().map(|place| self.normal[place]).collect(),
+            friction: friction.copied().collect(),
+        }
+    }
+}
 
 /// What the points of a problem have in common.
 pub struct Condensed<'a> {
@@ -30,10 +85,18 @@ pub enum Unsolved {
     /// With friction.
     #[error(transparent)]
     Friction(#[from] FrictionFailure),
+    /// Iterations that find motion and forces together did not end.
+    #[error("iterations of motion and contact forces did not end: {cause}")]
+    Iterations {
+        /// The unknown with the largest residual.
+        unknown: usize,
+        /// Cause.
+        cause: AlgebraError,
+    },
 }
 
 /// Forces and statuses of one candidate.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PointForces {
     /// Normal force, N, compressive positive.
     pub normal: f64,
@@ -45,59 +108,98 @@ pub struct PointForces {
     pub slip: Slip,
 }
 
-/// The candidates of a step, and what solves for their forces.
+/// Solves for the forces of contact points.
 #[derive(Default)]
 pub struct ContactSolver {
-    /// What their laws know.
-    pub candidates: Vec<Candidate>,
-    /// What friction adds to each; not looked at without tangents.
-    pub friction: Vec<Tangential>,
-    /// The solver without friction.
-    pub interface: Interface,
-    /// The solver with friction.
-    pub coulomb: Coulomb,
-    rubs: bool,
+    /// Forces and statuses of each candidate.
+    pub found: Vec<PointForces>,
+    /// Passes of the status loop of the last solve without friction.
+    pub passes: usize,
+    /// The candidate from which on statuses changed one at a time, if blocks of changes went in circles.
+    pub circled: Option<usize>,
+    /// A candidate whose tension was cut off, where points that lose and regain their forces by turns did not settle.
+    pub unsettled: Option<usize>,
+    interface: Interface,
+    coulomb: Coulomb,
 }
 
 impl ContactSolver {
+    /// Ends solves without a solution where this is set.
+    pub fn heed(&mut self, interrupt: &Interrupt) {
+        self.interface.interrupt.clone_from(interrupt);
+        self.coulomb.interrupt.clone_from(interrupt);
+    }
+
+    /// Forgets what was found, and has `n` open candidates in its place: those of problems that others solve.
+    pub fn open(&mut self, n: usize) {
+        self.found.clear();
+        self.found.resize(n, PointForces::default());
+        (self.passes, self.circled, self.unsettled) = (0, None, None);
+    }
+
     /// Solves for the forces and statuses of the candidates.
     ///
     /// # Errors
     /// [`Unsolved`].
-    pub fn solve(&mut self, problem: Condensed) -> Result<(), Unsolved> {
-        self.rubs = problem.tangents > 0;
-        if !self.rubs {
-            let d = (problem.d, problem.version);
-            let s = [problem.s[0], problem.s[1]];
-            return Ok(self.interface.solve(&self.candidates, d, s)?);
+    pub fn solve(&mut self, points: Candidates, problem: &Condensed) -> Result<(), Unsolved> {
+        self.open(0);
+        match problem.tangents {
+            0 => self.solve_normal(points.normal, problem),
+            _ => self.solve_rubbing(points, problem),
         }
-        let posed = Posed {
-            candidates: &self.candidates,
-            friction: &self.friction,
+    }
+
+    fn solve_normal(
+        &mut self,
+        candidates: &[Candidate],
+        problem: &Condensed,
+    ) -> Result<(), Unsolved> {
+        let s = [problem.s[0], problem.s[1]];
+        let solver = &mut self.interface;
+        let solved = solver.solve(candidates, (problem.d, problem.version), s);
+        solved.map_err(|failure| match failure {
+            Failure::Singular {
+                cause: cause @ AlgebraError::Iterations { unknown, .. },
+                ..
+            } => Unsolved::Iterations { unknown, cause },
+            other => Unsolved::Normal(other),
+        })?;
+        let both = solver.forces.iter().zip(&solver.statuses);
+        self.found
+            .extend(both.map(|(&normal, &status)| PointForces {
+                normal,
+                status,
+                ..PointForces::default()
+            }));
+        (self.passes, self.circled) = (solver.passes, solver.circled);
+        self.unsettled = solver.unsettled;
+        Ok(())
+    }
+
+    fn solve_rubbing(&mut self, points: Candidates, problem: &Condensed) -> Result<(), Unsolved> {
+        let solver = &mut self.coulomb;
+        let solved = solver.solve(&Posed {
+            candidates: points.normal,
+            friction: points.friction,
             tangents: problem.tangents,
             d: problem.d,
             s: problem.s,
             tolerance: problem.tolerance,
-        };
-        Ok(self.coulomb.solve(&posed)?)
-    }
-
-    /// What the last solve found of a candidate.
-    pub fn found(&self, candidate: usize) -> PointForces {
-        let (interface, coulomb) = (&self.interface, &self.coulomb);
-        match self.rubs {
-            false => PointForces {
-                normal: interface.forces[candidate],
-                tangential: [0.0; 2],
-                status: interface.statuses[candidate],
-                slip: Slip::Open,
-            },
-            true => PointForces {
-                normal: coulomb.forces[candidate],
-                tangential: coulomb.tangential[candidate],
-                status: coulomb.statuses[candidate],
-                slip: coulomb.slips[candidate],
-            },
+        });
+        match (solved, solver.cause.take()) {
+            (Ok(()), _) => {}
+            (Err(_), Some(cause @ AlgebraError::Iterations { unknown, .. })) => {
+                return Err(Unsolved::Iterations { unknown, cause });
+            }
+            (Err(failure), _) => return Err(Unsolved::Friction(failure)),
         }
+        let of = |k: usize| PointForces {
+            normal: solver.forces[k],
+            tangential: solver.tangential[k],
+            status: solver.statuses[k],
+            slip: solver.slips[k],
+        };
+        self.found.extend((0..points.normal.len()).map(of));
+        Ok(())
     }
 }

@@ -14,9 +14,7 @@
 
 use carom_bodies::{Inertia, Kinematics};
 use carom_contact::{Basis, Integration};
-use carom_dynamics::{
-    Driver, Model, ModelBody, ModelContact, ModelRigid, ModelTarget, Stepper, System,
-};
+use carom_dynamics::{Driver, Model, ModelBody, ModelContact, ModelRigid, ModelTarget, Stepper};
 use carom_exact::mass_on_bar::MassOnBar;
 use carom_materials::Elastic;
 use carom_mesh::{Mesh, generate};

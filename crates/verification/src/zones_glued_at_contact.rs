@@ -16,7 +16,7 @@
 use carom_arlequin::trace;
 use carom_bodies::{BodySpec, Kinematics, MassKind};
 use carom_dynamics::{
-    Adaptive, Closing, Driver, Model, ModelBody, ModelLink, Scheme, Stepper, System, scheme,
+    Adaptive, Closing, Driver, Model, ModelBody, ModelLink, Scheme, Stepper, scheme,
 };
 use carom_mesh::generate;
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};

@@ -11,7 +11,7 @@
 //! exact solution, and the cut outer steps leave momentum and impulse as they are.
 
 use carom_dynamics::scheme::{CentralDifference, Newmark};
-use carom_dynamics::{Adaptive, Closing, Driver, Model, Scheme, State, Stepper, System};
+use carom_dynamics::{Adaptive, Closing, Driver, Model, Scheme, State, Stepper};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::Error;

@@ -41,7 +41,7 @@ use carom_dynamics::Driver;
 use carom_dynamics::linearised::Origin;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::InterfaceState;
-use carom_nonsmooth::ContactSolver;
+use carom_nonsmooth::{CandidateData, ContactSolver};
 use carom_schemes::Scheme;
 use carom_system::System;
 
@@ -67,6 +67,7 @@ pub(crate) struct CrossZoneContacts {
     pub(crate) geometry: Geometry,
     pub(crate) candidates: Candidates,
     pub(crate) compliance: CrossZoneCompliance,
+    described: CandidateData,
     solver: ContactSolver,
     pub(crate) state: CrossZoneState,
     /// What the contacts did in the last outer step.
@@ -112,6 +113,7 @@ impl CrossZoneContacts {
             geometry: Geometry::new(&system, (drivers, &zoned.zones)),
             candidates: Candidates::new(drivers.len()),
             compliance: CrossZoneCompliance::new(&system),
+            described: CandidateData::default(),
             solver: ContactSolver::default(),
             reports: vec![ContactReport::default(); count],
             state: CrossZoneState {

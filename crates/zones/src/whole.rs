@@ -39,6 +39,8 @@ pub struct Whole {
     /// The assembly of the model to which each one of each zone belongs, and that of the rows of each link and constraint.
     of_assembly: Vec<Vec<usize>>,
     of_link: Vec<usize>,
+    /// Work so far of contacts and links by assembly, J.
+    assembly_works: Vec<f64>,
     /// Bodies of each zone.
     bodies: Vec<Vec<usize>>,
     places: Vec<Places>,
@@ -139,6 +141,7 @@ impl Whole {
         Whole {
             of_assembly: assemblies_of_zones(&zones, (&places, &system)),
             of_link: assemblies_of_links(&zones, (&places, &system)),
+            assembly_works: Vec::new(),
             names: zoned.zones.iter().map(|zone| zone.name.clone()).collect(),
             links: zoned.zones_of_rows(),
             bodies: zoned.zones.iter().map(|zone| zone.bodies.clone()).collect(),
@@ -227,8 +230,9 @@ impl Whole {
     /// Energies of the assemblies of the model from those of the zones.
     pub(super) fn gather_assemblies(&mut self) {
         let (system, assemblies) = (&*self.system, &self.system.assemblies);
-        let mut works = vec![0.0; assemblies.all.len()];
-        for (assembly, works) in assemblies.all.iter().zip(&mut works) {
+        let works = &mut self.assembly_works;
+        works.resize(assemblies.all.len(), 0.0);
+        for (assembly, works) in assemblies.all.iter().zip(&mut *works) {
             let contacts = assembly.contacts.iter();
             let records = &self.state.records.contacts;
             *works = contacts.map(|&k| records[k].work_with_friction()).sum();
@@ -241,7 +245,7 @@ impl Whole {
             let energies = driver.state().assemblies.all.iter();
             of.iter().copied().zip(energies)
         });
-        self.state.assemblies.gather(system, zones, &works);
+        self.state.assemblies.gather(system, zones, works);
         self.state.assemblies.of_whole_alone = self.zones.drivers.iter().any(|driver| {
             let identity = driver
                 .system()

@@ -12,9 +12,8 @@ mod step;
 
 use carom_algebra::csr::Csr;
 use carom_algebra::solver::Cholesky;
-use carom_laws::{Friction, Law, Status};
-use carom_nonsmooth::ContactSolver;
-use carom_nonsmooth::coulomb::Slip;
+use carom_laws::{Friction, Law};
+use carom_nonsmooth::{CandidateData, ContactSolver, PointForces};
 use carom_schemes::{LaursenChawla, Row, Scheme, StepMap, TimeScheme};
 use pyo3::prelude::*;
 
@@ -47,11 +46,8 @@ struct Point {
     gap: f64,
     /// Friction.
     friction: Friction,
-    status: Status,
-    slip: Slip,
-    /// Forces of the last step, N.
-    force: f64,
-    tangential: [f64; 2],
+    /// Forces and statuses of the last step.
+    last: PointForces,
     /// Force in the balance at the start of the next step, N.
     carried: f64,
     /// Largest penetration so far, m.
@@ -62,6 +58,7 @@ struct Point {
 #[derive(Default)]
 struct Condensed {
     solver: ContactSolver,
+    data: CandidateData,
     /// The candidates of the last step, and their rows.
     candidates: Vec<u32>,
     rows: Vec<u32>,
@@ -213,10 +210,7 @@ impl MatrixRun {
             law: *law,
             gap,
             friction,
-            status: Status::Open,
-            slip: Slip::Open,
-            force: 0.0,
-            tangential: [0.0; 2],
+            last: PointForces::default(),
             carried: 0.0,
             crush: 0.0,
         };
@@ -278,8 +272,13 @@ impl MatrixRun {
             }
             self.take_step(load, tolerance)?;
             let (forces, tangential, places) = &mut history;
-            forces.push(self.points.iter().map(|point| point.force).collect());
-            tangential.push(self.points.iter().map(|point| point.tangential).collect());
+            forces.push(self.points.iter().map(|point| point.last.normal).collect());
+            tangential.push(
+                self.points
+                    .iter()
+                    .map(|point| point.last.tangential)
+                    .collect(),
+            );
             places.push(self.motion.u.clone());
         }
         Ok(history)

@@ -60,11 +60,11 @@ impl MatrixRun {
         let (mut points, mut rates, mut works) = (Vec::new(), Vec::new(), Vec::new());
         let [old, new] = [&self.motion, &self.room.next];
         for (k, point) in self.points.iter().enumerate() {
-            if before[k] != Status::Open || point.status == Status::Open {
+            if before[k] != Status::Open || point.last.status == Status::Open {
                 continue;
             }
             let on = |vector: &[f64]| self.rows.along_normal(k, vector);
-            let taken = -point.force * (on(&new.u) - on(&old.u));
+            let taken = -point.last.normal * (on(&new.u) - on(&old.u));
             if taken > 0.0 {
                 points.push(k);
                 rates.push(on(&new.v));
@@ -83,10 +83,10 @@ impl MatrixRun {
     pub(super) fn project(&mut self, before: &[Status]) -> PyResult<()> {
         let started: Vec<f64> = self.points.iter().map(|point| point.carried).collect();
         for point in &mut self.points {
-            point.carried = point.force;
+            point.carried = point.last.normal;
         }
         let given = self.points.iter().enumerate();
-        let closed = given.filter(|(_, p)| p.law.projects() && p.status != Status::Open);
+        let closed = given.filter(|(_, p)| p.law.projects() && p.last.status != Status::Open);
         let points: Vec<usize> = closed.map(|(k, _)| k).collect();
         if points.iter().all(|&k| before[k] != Status::Open) {
             return Ok(());
@@ -97,9 +97,9 @@ impl MatrixRun {
         };
         let next = &mut self.room.next;
         let weights = self.map.contact_impulse;
-        let present = points
-            .iter()
-            .map(|&k| self.dt * (weights.old * started[k] + weights.new * self.points[k].force));
+        let present = points.iter().map(|&k| {
+            self.dt * (weights.old * started[k] + weights.new * self.points[k].last.normal)
+        });
         let present: Vec<f64> = present.collect();
         let on = |vector: &[f64]| -> Vec<f64> {
             let along = |row: &u32| self.rows.along(*row as usize, vector);
@@ -115,7 +115,7 @@ impl MatrixRun {
                 *value = f64::INFINITY;
             }
         }
-        let present: Vec<f64> = points.iter().map(|&k| self.points[k].force).collect();
+        let present: Vec<f64> = points.iter().map(|&k| self.points[k].last.normal).collect();
         let solved = of_mass.complement(&rows, &values, &present);
         solved.map_err(|error| failed(&error))?;
         of_mass.spread_added(&rows, &mut next.a);

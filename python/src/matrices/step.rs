@@ -1,10 +1,8 @@
 //! One step: the motion without contact forces, the interface problem of the candidates, and the end of the step.
 
 use carom_dynamics::paired::told;
-use carom_laws::{Law, Level, Local, Status};
-use carom_nonsmooth::coulomb::{Slip, Tangential};
-use carom_nonsmooth::interface::Candidate;
-use carom_nonsmooth::{Compliance, Condensed as Posed};
+use carom_laws::{Law, Level, Status};
+use carom_nonsmooth::{Compliance, Condensed as Posed, ContactPoint, PointForces};
 use carom_schemes::{Known, Row, StepMap};
 use pyo3::prelude::*;
 
@@ -69,8 +67,8 @@ impl MatrixRun {
     fn choose(&mut self, tolerance: f64) {
         let mut condensed = std::mem::take(&mut self.condensed);
         condensed.candidates.clear();
-        condensed.solver.candidates.clear();
-        let map = self.map;
+        condensed.data.clear();
+        let (map, sliding, tangents) = (self.map, self.sliding(), self.rows.tangents());
         for point in 0..self.points.len() {
             let row = self.rows.normal(point);
             let given = &self.points[point];
@@ -78,35 +76,45 @@ impl MatrixRun {
             let placed = given.gap + self.quantity(row, &map.placed, false);
             let moving = self.rows.along(row, &self.motion.v);
             if told(&law, (placed, moving), map.moves, tolerance) == Some(false) {
-                let point = &mut self.points[point];
-                (point.status, point.slip) = (Status::Open, Slip::Open);
-                (point.force, point.tangential) = (0.0, [0.0; 2]);
+                self.points[point].last = PointForces::default();
                 continue;
             }
             let [gap, rate] = constrained(&map, &law);
             condensed.candidates.push(point as u32);
-            condensed.solver.candidates.push(Candidate {
+            let instant = match law.get().level() {
+                Level::GapAndRate => map.compliant_factors(),
+                Level::Gap | Level::Rate => [1.0; 2],
+            };
+            let free = [
+                given.gap + self.quantity(row, &gap, true),
+                self.quantity(row, &rate, true),
+            ];
+            let described = ContactPoint {
                 law,
-                local: Local {
-                    area: 1.0,
-                    share: 1.0,
-                    gap: placed,
-                    rate: moving,
-                    start: map.start_in_way() * moving,
-                    gap_free: given.gap + self.quantity(row, &gap, true),
-                    dt: map.moves,
-                    tolerance,
-                    crush: given.crush,
-                    at: [placed, moving],
-                },
-                rate_free: self.quantity(row, &rate, true),
-                status: given.status,
+                area: 1.0,
+                share: 1.0,
+                tolerance,
                 faces_itself: false,
-                instant: match law.get().level() {
-                    Level::GapAndRate => map.compliant_factors(),
-                    Level::Gap | Level::Rate => [1.0; 2],
-                },
-            });
+                crush: given.crush,
+                gap: placed,
+                rate: moving,
+                rebound: 1.0,
+                in_way: map.start_in_way(),
+                dt: map.moves,
+                last: given.last,
+            };
+            let data = &mut condensed.data;
+            data.normal.push(described.candidate(free, instant));
+            if tangents > 0 {
+                let (mut slid, mut square) = ([0.0; 2], 0.0);
+                for (k, slid) in slid.iter_mut().enumerate().take(tangents) {
+                    *slid = self.quantity(row + 1 + k, &sliding, true);
+                    square += self.rows.along(row + 1 + k, &self.motion.v).powi(2);
+                }
+                let friction = &given.friction;
+                let tangential = described.tangential(friction, square.sqrt(), slid);
+                data.friction.push(tangential);
+            }
         }
         self.condensed = condensed;
     }
@@ -168,43 +176,21 @@ impl MatrixRun {
             false => [self.map.gap.x, self.map.rate.x, sliding.x].map(|s| s * factor),
         };
         let tangents = self.rows.tangents();
-        let condensed = std::mem::take(&mut self.condensed);
-        let friction = condensed.candidates.iter().map(|&point| {
-            let given = &self.points[point as usize];
-            let mut free = [0.0; 2];
-            for (k, free) in free.iter_mut().enumerate().take(tangents) {
-                let row = self.rows.normal(point as usize) + 1 + k;
-                *free = self.quantity(row, &sliding, true);
-            }
-            // the coefficient of sliding is that of the rate at the start of the step
-            let rate = |k: usize| {
-                let row = self.rows.normal(point as usize) + 1 + k;
-                self.rows.along(row, &self.motion.v).powi(2)
-            };
-            let law = given.friction.get();
-            let slides = law.slides((0..tangents).map(rate).sum::<f64>().sqrt());
-            Tangential {
-                mu: law.sticks(),
-                sliding: (slides < law.sticks()).then_some(slides),
-                free,
-                slip: given.slip,
-                force: given.tangential,
-                pressed: given.force,
-            }
-        });
-        let friction: Vec<Tangential> = friction.collect();
-        self.condensed = condensed;
         let Condensed {
-            solver, d, version, ..
+            data,
+            solver,
+            d,
+            version,
+            ..
         } = &mut self.condensed;
-        solver.friction = friction;
-        let solved = solver.solve(Posed {
+        let problem = Posed {
             d: Compliance::Dense(d),
             version: *version,
             s,
             tangents,
             tolerance: TOLERANCE,
-        });
+        };
+        let solved = solver.solve(data.all(), &problem);
         solved.map_err(|error| failed(&error))
     }
 
@@ -216,12 +202,10 @@ impl MatrixRun {
         self.room.push.fill(0.0);
         for (k, &number) in condensed.candidates.iter().enumerate() {
             let point = &mut self.points[number as usize];
-            let found = condensed.solver.found(k);
-            (point.force, point.status) = (found.normal, found.status);
-            (point.tangential, point.slip) = (found.tangential, found.slip);
+            point.last = condensed.solver.found[k];
             let first = self.rows.normal(number as usize);
-            let [t1, t2] = point.tangential;
-            let forces = [point.force, t1, t2];
+            let [t1, t2] = point.last.tangential;
+            let forces = [point.last.normal, t1, t2];
             let forces = || (first..=first + tangents).zip(forces);
             for (row, force) in forces().filter(|(_, force)| *force != 0.0) {
                 for (x, c) in self.room.x.iter_mut().zip(&self.columns[row]) {
@@ -252,7 +236,7 @@ impl MatrixRun {
         self.room.x.copy_from_slice(&self.room.residual);
         self.factor.solve(&mut self.room.x);
         let before = self.condensed.candidates.clone();
-        let statuses: Vec<Status> = self.points.iter().map(|point| point.status).collect();
+        let statuses: Vec<Status> = self.points.iter().map(|point| point.last.status).collect();
         self.choose(tolerance);
         self.condense(&before);
         self.solve()?;
@@ -262,7 +246,7 @@ impl MatrixRun {
         self.project(&statuses)?;
         std::mem::swap(&mut self.motion, &mut self.room.next);
         for (k, point) in self.points.iter_mut().enumerate() {
-            if point.force != 0.0 {
+            if point.last.normal != 0.0 {
                 let gap = point.gap + self.rows.along_normal(k, &self.motion.u);
                 point.crush = point.law.crushed(point.crush, gap);
             }

@@ -1,16 +1,15 @@
 //! The contact problem of a diagonal matrix: groups of points that share no unknown are solved apart, on all threads. Of a large
 //! group the compliance is the product of its sparse rows, and nothing is dense.
 
-use std::ops::Range;
 use std::sync::Arc;
 
+use carom_nonsmooth::Unsolved;
 use rayon::prelude::*;
 
 use super::Driver;
 use super::leapfrog::Apart;
 use super::owners::{Attempt, Contacts};
-use super::span::{Candidates, Span, Unsolved};
-use crate::coulomb::Tangential;
+use super::span::{Candidates, Span};
 use crate::error::Error;
 use crate::groups::{Masses, PointRows};
 
@@ -34,8 +33,7 @@ impl Driver {
             .points
             .extend(points.map(|&place| self.contacts.candidates[place as usize]));
         std::mem::swap(&mut self.contacts.candidates, &mut apart.points);
-        let mut friction = std::mem::take(&mut apart.friction);
-        self.describe_apart((&mut apart.free, &mut friction), free);
+        self.describe_apart(&mut apart.free, free);
         // what the laws see of the state is in their data now
         self.contacts.release(&mut self.attempt);
         let candidates = std::mem::take(&mut self.contacts.candidates);
@@ -45,7 +43,6 @@ impl Driver {
         let of = Candidates {
             points: &candidates,
             data: &data,
-            friction: &friction,
             rows: self.contacts.rows_of_points(&self.attempt),
             masses: Masses {
                 lumped: &system.mass.lumped,
@@ -69,34 +66,27 @@ impl Driver {
             failed = span.unsolved.take().map(|(group, failure)| {
                 let rubs = matches!(failure, Unsolved::Friction(_));
                 let entries = span.entries(&of, group.clone(), (rubs, KEPT));
-                (group, failure, entries, of.factors)
+                (group, failure, entries.map(|entries| (entries, of.factors)))
             });
         }
         (self.contacts.candidates, self.contacts.candidate_data) = (candidates, data);
-        if let Some((group, failure, entries, factors)) = failed {
-            let own = friction.get(group.clone()).unwrap_or_default();
-            return Err(self.contacts.unsolved(
-                &self.attempt,
-                (group, own),
-                failure,
-                (entries, factors),
-            ));
+        if let Some((group, failure, entries)) = failed {
+            let places: Vec<u32> = group.map(|place| place as u32).collect();
+            self.contacts.keep_places(&places);
+            return Err(self.contacts.unsolved(&self.attempt, failure, entries));
         }
-        self.contacts.take_found(&mut self.attempt, &apart.spans);
-        apart.friction = friction;
+        self.contacts.gather(&apart.spans);
+        for &candidate in apart.spans.iter().flat_map(|span| &span.circled) {
+            self.contacts.warn_of_circle(&self.attempt, candidate);
+        }
+        self.contacts.take_found(&mut self.attempt);
         std::mem::swap(&mut self.contacts.candidates, &mut apart.points);
         Ok(())
     }
 
-    /// What the laws of the candidates know, and what friction adds to each; nothing without friction. `room`: a system vector.
-    fn describe_apart(
-        &mut self,
-        (room, friction): (&mut Vec<f64>, &mut Vec<Tangential>),
-        free: impl Fn(&Driver, usize) -> f64,
-    ) {
+    /// Describes the candidates. `room`: a system vector.
+    fn describe_apart(&mut self, room: &mut Vec<f64>, free: impl Fn(&Driver, usize) -> f64) {
         room.resize(self.attempt.system.unknowns(), 0.0);
-        let mut data = std::mem::take(&mut self.contacts.candidate_data);
-        data.clear();
         let rows = self.contacts.rows_of_points(&self.attempt);
         let width = rows.width();
         let points = self.contacts.candidates.iter();
@@ -104,18 +94,11 @@ impl Driver {
         for &dof in numbers.flat_map(|number| rows.row(number).0) {
             room[dof as usize] = free(self, dof as usize);
         }
-        let along = |number: u32| rows.product(number, room);
-        let points = self.contacts.candidates.iter();
-        data.extend(points.map(|&point| {
-            self.contacts
-                .candidate(&self.attempt, point as usize, along(point * width))
-        }));
-        friction.clear();
-        if width > 1 {
-            self.contacts
-                .describe_friction(&self.attempt, along, friction);
-        }
-        self.contacts.candidate_data = data;
+        let attempt = &self.attempt;
+        self.contacts
+            .describe_candidates(attempt, width, |contacts, number| {
+                contacts.rows_of_points(attempt).product(number, room)
+            });
     }
 }
 
@@ -140,47 +123,13 @@ impl Contacts {
         }
     }
 
-    /// The error of a group without solution, whose problem is kept.
-    pub(super) fn unsolved(
-        &mut self,
-        attempt: &Attempt,
-        (group, friction): (Range<usize>, &[Tangential]),
-        failure: Unsolved,
-        (entries, factors): (Option<Vec<f64>>, [f64; 3]),
-    ) -> Error {
-        self.keep_places(&group.map(|place| place as u32).collect::<Vec<_>>());
-        match (failure, entries) {
-            (Unsolved::Normal(failure), Some(entries)) => {
-                self.keep_problem(attempt, failure, entries, [factors[0], factors[1]])
-            }
-            (Unsolved::Normal(failure), None) => attempt.interface_error(failure, &self.candidates),
-            (Unsolved::Friction(failure), entries) => {
-                if let Some(entries) = entries {
-                    self.keep_failed(attempt, friction.to_vec(), entries, factors);
-                }
-                self.friction_error(attempt, failure)
-            }
-        }
-    }
-
-    /// Takes the forces and statuses of the candidates.
-    pub(super) fn take_found(&mut self, attempt: &mut Attempt, spans: &[Span]) {
-        let interface = &mut attempt.next.interface;
+    /// What was found for the candidates of all groups.
+    fn gather(&mut self, spans: &[Span]) {
+        self.solver.open(0);
         let found = spans.iter().flat_map(|span| &span.found);
-        for (&point, found) in self.candidates.iter().zip(found) {
-            let at = point as usize;
-            interface.force[at] = found.force;
-            interface.status[at] = found.status;
-            if let Some(friction) = interface.friction.get_mut(at) {
-                *friction = found.tangential;
-                self.slips[at] = found.slip;
-            }
-        }
+        self.solver.found.extend(found);
         let passes = spans.iter().map(|span| span.passes);
-        self.interface.passes = passes.max().unwrap_or(0);
-        for &candidate in spans.iter().flat_map(|span| &span.circled) {
-            self.warn_of_circle(attempt, candidate);
-        }
-        self.note_clipped(attempt, spans.iter().find_map(|span| span.unsettled));
+        self.solver.passes = passes.max().unwrap_or(0);
+        self.solver.unsettled = spans.iter().find_map(|span| span.unsettled);
     }
 }

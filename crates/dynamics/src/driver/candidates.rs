@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use carom_contact::law::Status;
-use carom_nonsmooth::Compliance;
 
 use super::Driver;
 use super::deletion::as_narrowed;
@@ -11,7 +10,6 @@ use super::owners::{Attempt, Contacts, Parts, Stages};
 use super::paired::{approaches, sums_compliances};
 use crate::coulomb::Slip;
 use crate::error::Error;
-use crate::interface::{Candidate, Failure, Interface, InterfaceProblem};
 
 /// Additions of missed candidates within one iteration.
 const ADDITIONS: usize = 10;
@@ -75,137 +73,6 @@ impl Driver {
             self.parts.load_jump(&mut self.attempt);
         }
     }
-
-    /// Forces and statuses of the candidates; their forces are added to the solve between its forward and its backward sweep.
-    fn solve_candidates(&mut self) -> Result<(), Error> {
-        if self.contacts.candidates.is_empty() {
-            self.contacts.release(&mut self.attempt);
-            return Ok(());
-        }
-        if self.contacts.rubs(&self.attempt) {
-            return self.solve_with_friction();
-        }
-        let (system, together) = (
-            Arc::clone(&self.attempt.system),
-            self.stages.is_one_group(&self.contacts, &self.attempt),
-        );
-        let Some((operators, compliance)) = self.parts.effective.both() else {
-            return Ok(());
-        };
-        let rows = &self.contacts.pairing.rows;
-        let points = (&self.contacts.candidates[..], 1, together);
-        if !self.parts.refined.holds_columns {
-            let room = compliance.has_room(points, rows, &system.fixed, operators);
-            room.map_err(|cause| Error::no_room(self.attempt.state.step, cause))?;
-            compliance.update(points, rows, &system.fixed, operators);
-        }
-        let (several, iterate) = (compliance.groups().several(), operators.iterate());
-        self.contacts
-            .describe_candidates(&self.parts, &self.attempt, None);
-        let factor = self.attempt.maps.contact();
-        if iterate {
-            return self.solve_iterated(factor);
-        }
-        if several {
-            let map = self.attempt.maps.first();
-            self.contacts.solve_groups(
-                &mut self.parts,
-                &self.attempt,
-                [map.gap.x * factor, map.rate.x * factor],
-            )?;
-            return self.take_forces(factor);
-        }
-        let Some((operators, compliance, mut linking)) = self.parts.effective.all() else {
-            return Ok(());
-        };
-        let rows = &self.contacts.pairing.rows;
-        let (matrix, version) = match &mut linking {
-            Some(linking) => linking.compliance(&system, (&mut *operators, compliance), rows),
-            None => (compliance.matrix(), compliance.version),
-        };
-        let impulsive = match &mut self.stages.impulses {
-            Some(stage) if sums_compliances(&system, self.attempt.maps.first()) => {
-                let rate = self.attempt.maps.first().rate;
-                let own = (rate.x * factor, matrix);
-                stage.sum(&system, rows, &self.contacts.candidates, own, rate.c)
-            }
-            _ => None,
-        };
-        let (matrix, factors) = match impulsive {
-            Some(matrix) => (matrix, [0.0, 1.0]),
-            None => (
-                matrix,
-                [
-                    self.attempt.maps.first().gap.x * factor,
-                    self.attempt.maps.first().rate.x * factor,
-                ],
-            ),
-        };
-        let condensed = (matrix, compliance.rows(), version);
-        let matrix =
-            self.contacts
-                .with_weak
-                .of(&self.contacts.weak, &system, (condensed, rows), factors);
-        let problem = (Compliance::Dense(matrix.0), matrix.1);
-        let solved = self
-            .contacts
-            .interface
-            .solve(&self.contacts.candidate_data, problem, factors);
-        if let Err(failure) = solved {
-            let compliance = matrix.0.to_vec();
-            return Err(self
-                .contacts
-                .keep_problem(&self.attempt, failure, compliance, factors));
-        }
-        self.take_forces(factor)
-    }
-
-    /// Writes the forces and statuses found, and adds the forces, times `factor`, to the begun solve.
-    pub(super) fn take_forces(&mut self, factor: f64) -> Result<(), Error> {
-        let system = Arc::clone(&self.attempt.system);
-        self.contacts
-            .note_clipped(&mut self.attempt, self.contacts.interface.unsettled);
-        let Some((operators, compliance, linking)) = self.parts.effective.all() else {
-            return Ok(());
-        };
-        let interface = &mut self.attempt.next.interface;
-        interface.force.fill(0.0);
-        interface.status.fill(Status::Open);
-        for (k, &point) in self.contacts.candidates.iter().enumerate() {
-            let force = self.contacts.interface.forces[k];
-            interface.force[point as usize] = force;
-            interface.status[point as usize] = self.contacts.interface.statuses[k];
-            if force != 0.0 {
-                compliance.add(
-                    point,
-                    factor * force,
-                    operators,
-                    &mut self.attempt.vectors.half,
-                );
-            }
-        }
-        if let Some(linking) = linking {
-            let forces = self
-                .contacts
-                .candidates
-                .iter()
-                .zip(&self.contacts.interface.forces);
-            let forces = forces.map(|(&point, force)| (point, factor * force));
-            let pushed = &mut self.links.multipliers.change[1];
-            linking.answer(
-                &system,
-                operators,
-                forces,
-                (&mut self.attempt.vectors.half, pushed),
-            );
-        }
-        self.part_links();
-        if let Some(candidate) = self.contacts.interface.circled {
-            self.contacts.warn_of_circle(&self.attempt, candidate);
-        }
-        self.contacts.take_weak(&self.attempt);
-        Ok(())
-    }
 }
 
 impl Contacts {
@@ -224,10 +91,9 @@ impl Contacts {
 
     /// Makes the candidates those at some places, to be told of.
     pub(super) fn keep_places(&mut self, places: &[u32]) {
-        let (points, data) = (&self.candidates, &self.candidate_data);
-        let points = places.iter().map(|&place| points[place as usize]).collect();
-        let data = places.iter().map(|&place| data[place as usize]).collect();
-        (self.candidates, self.candidate_data) = (points, data);
+        let points = places.iter().map(|&place| self.candidates[place as usize]);
+        self.candidates = points.collect();
+        self.candidate_data = self.candidate_data.at(places);
     }
 
     /// Notes the candidate whose tension did not settle, if there is one, in place of that of the iteration before.
@@ -258,26 +124,6 @@ impl Contacts {
             }
         }
         self.take_weak(attempt);
-    }
-
-    /// Keeps the interface problem that was not solved, and names the failure.
-    pub(super) fn keep_problem(
-        &mut self,
-        attempt: &Attempt,
-        failure: Failure,
-        compliance: Vec<f64>,
-        factors: [f64; 2],
-    ) -> Error {
-        let names = self.candidates.iter();
-        let names = names.map(|&point| attempt.name(point as usize));
-        self.failed = Some(InterfaceProblem {
-            step: attempt.state.step + 1,
-            names: names.collect(),
-            candidates: self.candidate_data.clone(),
-            compliance,
-            factors,
-        });
-        attempt.interface_error(failure, &self.candidates)
     }
 
     /// Points that may carry a force. Some laws say so before the forces; of others, those are taken that carried one or that
@@ -319,57 +165,6 @@ impl Contacts {
         }
     }
 
-    /// Forces and statuses of candidates in several groups, each solved by itself.
-    pub(super) fn solve_groups(
-        &mut self,
-        parts: &mut Parts,
-        attempt: &Attempt,
-        factors: [f64; 2],
-    ) -> Result<(), Error> {
-        let Some((_, compliance)) = parts.effective.both() else {
-            return Ok(());
-        };
-        let n = self.candidates.len();
-        let all = &mut self.interface;
-        all.forces.clear();
-        all.forces.resize(n, 0.0);
-        all.statuses.clear();
-        all.statuses.resize(n, Status::Open);
-        (all.passes, all.circled, all.unsettled) = (0, None, None);
-        let mut failed = None;
-        for (group, range) in compliance.groups().ranges().enumerate() {
-            let places = &compliance.groups().order()[range];
-            if self.interfaces.len() == group {
-                let mut solver = Interface::default();
-                solver.interrupt.clone_from(&attempt.interrupt);
-                self.interfaces.push(solver);
-            }
-            let (solver, all) = (&mut self.interfaces[group], &mut self.interface);
-            let of_place = |&place: &u32| self.candidate_data[place as usize];
-            let own: Vec<Candidate> = places.iter().map(of_place).collect();
-            let block = compliance.block(group);
-            let problem = (Compliance::Dense(block), compliance.version);
-            if let Err(failure) = solver.solve(&own, problem, factors) {
-                failed = Some((failure, block.to_vec(), places.to_vec()));
-                break;
-            }
-            for (k, &place) in places.iter().enumerate() {
-                all.forces[place as usize] = solver.forces[k];
-                all.statuses[place as usize] = solver.statuses[k];
-            }
-            all.passes = all.passes.max(solver.passes);
-            let circled = solver.circled.map(|k| places[k] as usize);
-            all.circled = all.circled.or(circled);
-            let unsettled = solver.unsettled.map(|k| places[k] as usize);
-            all.unsettled = all.unsettled.or(unsettled);
-        }
-        if let Some((failure, block, places)) = failed {
-            self.keep_places(&places);
-            return Err(self.keep_problem(attempt, failure, block, factors));
-        }
-        Ok(())
-    }
-
     /// Adds the points that were no candidates and whose law asks for a force; whether there are any.
     pub(super) fn add_missed(&mut self, parts: &Parts, attempt: &mut Attempt) -> bool {
         let before = self.candidates.len();
@@ -392,30 +187,6 @@ impl Contacts {
         self.active = active;
         self.candidates.sort_unstable();
         self.candidates.len() > before
-    }
-}
-
-impl Attempt {
-    /// The error behind a failure of the interface problem of some points.
-    pub(super) fn interface_error(&self, failure: Failure, candidates: &[u32]) -> Error {
-        let step = self.state.step + 1;
-        match failure {
-            Failure::Singular { points, cause } => Error::Interface {
-                step,
-                points,
-                cause,
-            },
-            Failure::Cycling { passes, candidate } => {
-                let (contact, point) = self.system.point(candidates[candidate] as usize);
-                Error::Statuses {
-                    step,
-                    passes,
-                    contact: contact.name.clone(),
-                    point,
-                }
-            }
-            Failure::Interrupted { .. } => Error::Interrupted,
-        }
     }
 }
 

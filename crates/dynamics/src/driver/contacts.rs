@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use carom_contact::law::{End, Level, Local, Status};
+use carom_contact::law::{End, Level, Status};
 use carom_contact::{Balance, Sliding};
 
 use super::Vectors;
@@ -153,34 +153,6 @@ impl Contacts {
             gap,
             attempt.maps.on((rows, point), rate, motion, xc) + obstacle,
         )
-    }
-
-    /// What the law of a point may know before the forces.
-    pub(super) fn local(&self, attempt: &Attempt, point: usize, gap_free: f64) -> Local {
-        let (contact, place) = attempt.system.point(point);
-        let carrier = &contact.points[place];
-        let rows = &self.pairing.rows;
-        let gap = match attempt.between() {
-            // S_d looks at the start of the step
-            true => attempt.state.interface.gap[point],
-            false => rows.gap(point),
-        };
-        let rate = self.rate_at_start(attempt, point);
-        Local {
-            area: carrier.area,
-            share: carrier.share,
-            gap,
-            rate: self.rebound_of(attempt, point) * rate,
-            start: attempt
-                .map_of(attempt.system.contact_of(point))
-                .start_in_way()
-                * rate,
-            gap_free,
-            dt: attempt.moves(point),
-            tolerance: attempt.system.tolerance_at(point),
-            crush: attempt.state.interface.crush[point],
-            at: [gap, rate],
-        }
     }
 
     /// Gap rate at the start of the step, m/s, with the rows of the iteration.

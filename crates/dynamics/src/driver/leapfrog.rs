@@ -5,7 +5,6 @@ use carom_algebra::unknowns::Kind;
 use super::direct_links::DirectLinks;
 use super::span::Span;
 use crate::blocks::{Block, blocks};
-use crate::coulomb::Tangential;
 use crate::groups::Groups;
 use crate::scheme::EnergyIdentity;
 use crate::step_map::{Impulse, Row, StepMap};
@@ -47,8 +46,6 @@ pub(super) struct Apart {
     pub(super) points: Vec<u32>,
     /// Acceleration without contact forces of their unknowns, m/s²; other entries have no meaning.
     pub(super) free: Vec<f64>,
-    /// What friction adds to each.
-    pub(super) friction: Vec<Tangential>,
     /// The groups in as many parts as there are threads, or fewer.
     pub(super) spans: Vec<Span>,
 }

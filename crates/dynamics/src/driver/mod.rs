@@ -26,6 +26,7 @@ mod carried;
 mod closing;
 mod closings;
 mod compressed;
+mod contact_forces;
 mod contacts;
 mod deletion;
 mod describe;
@@ -39,11 +40,9 @@ mod far;
 mod floating;
 mod followed;
 mod forces;
-mod friction;
 mod held;
 mod identity;
 mod impulse;
-mod iterated;
 mod joined;
 mod landing;
 mod leapfrog;
@@ -199,12 +198,14 @@ impl Driver {
             return;
         }
         self.attempt.interrupt = interrupt.clone();
-        self.contacts.coulomb.interrupt = interrupt.clone();
-        for interface in
-            std::iter::once(&mut self.contacts.interface).chain(&mut self.contacts.interfaces)
-        {
-            interface.interrupt = interrupt.clone();
-        }
+        let Contacts {
+            solver,
+            group_solvers,
+            ..
+        } = &mut self.contacts;
+        std::iter::once(solver)
+            .chain(group_solvers)
+            .for_each(|solver| solver.heed(interrupt));
     }
 }
 

@@ -7,6 +7,7 @@ use carom_algebra::Interrupt;
 use carom_algebra::solver::Saddle;
 use carom_bodies::{Scratch, Stored};
 use carom_contact::{Contact, Pairing, Rows, Search};
+use carom_nonsmooth::{CandidateData, ContactSolver};
 use carom_system::ContactPair;
 
 use super::active::Active;
@@ -28,9 +29,9 @@ use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
 use crate::contact_sums::ContactSums;
 use crate::costs::Phases;
-use crate::coulomb::{Coulomb, FrictionProblem, Slip};
+use crate::coulomb::{FrictionProblem, Slip};
 use crate::error::Error;
-use crate::interface::{Candidate, Interface, InterfaceProblem};
+use crate::interface::InterfaceProblem;
 use crate::report::Notices;
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
@@ -46,9 +47,10 @@ pub(super) struct Contacts {
     pub(super) turns: bool,
     /// Whether sliding is a velocity in steps of this size and stage.
     pub(super) by_rate: bool,
-    pub(super) interface: Interface,
+    /// Solves for the forces of the candidates, and has what was found.
+    pub(super) solver: ContactSolver,
     /// Those of groups of candidates that do not act on each other, where there are several.
-    pub(super) interfaces: Vec<Interface>,
+    pub(super) group_solvers: Vec<ContactSolver>,
     /// The problem of contacts where matrices are solved with by iterations.
     pub(super) saddle: RefCell<Saddle>,
     pub(super) pairing: Pairing,
@@ -67,10 +69,9 @@ pub(super) struct Contacts {
     pub(super) rebound: Rebound,
     /// Points that may carry a force, ascending.
     pub(super) candidates: Vec<u32>,
-    pub(super) candidate_data: Vec<Candidate>,
+    pub(super) candidate_data: CandidateData,
     /// Gaps of the candidates at the end of the step without any contact force, m; of an adaptive step.
     pub(super) free_gaps: Vec<f64>,
-    pub(super) coulomb: Coulomb,
     pub(super) weak: WeakForms,
     pub(super) with_weak: WithWeak,
     /// Normal and tangential rows of all points, point after point, where there is friction; of steps with iterations.
@@ -94,8 +95,8 @@ impl Contacts {
             pairing_modes: Vec::new(),
             turns: false,
             by_rate: false,
-            interface: Interface::default(),
-            interfaces: Vec::new(),
+            solver: ContactSolver::default(),
+            group_solvers: Vec::new(),
             saddle: RefCell::default(),
             pairing: Pairing::default(),
             initial: vec![Pairing::default(); system.contacts.len()],
@@ -108,9 +109,8 @@ impl Contacts {
             closings: Closings::of(system),
             rebound: Rebound::of(system),
             candidates: Vec::new(),
-            candidate_data: Vec::new(),
+            candidate_data: CandidateData::default(),
             free_gaps: Vec::new(),
-            coulomb: Coulomb::default(),
             weak: WeakForms::new(system)?,
             with_weak: WithWeak::default(),
             stacked: Rows::default(),

@@ -218,7 +218,7 @@ impl Driver {
             failed: failed.is_some(),
             passes: match self.contacts.candidates.is_empty() {
                 true => 0,
-                false => self.contacts.interface.passes,
+                false => self.contacts.solver.passes,
             },
         };
         let told = shared.sum_up(parts, energies, &mut contacts, &told);
@@ -229,7 +229,7 @@ impl Driver {
         if told.failed {
             return Err(of_ranks(&shared.ranks, failed));
         }
-        self.contacts.interface.passes = told.passes;
+        self.contacts.solver.passes = told.passes;
         let sums = direct.total(self.attempt.system.axisymmetric);
         self.know_end(&sums, direct);
         self.contacts.know_gaps(&mut self.attempt, &mut contacts);

@@ -200,7 +200,7 @@ impl Driver {
         self.report.passes = match self.attempt.system.is_nonlinear() {
             true => self.parts.residuals.len(),
             false if self.contacts.candidates.is_empty() && !self.is_shared() => 0,
-            false => self.contacts.interface.passes,
+            false => self.contacts.solver.passes,
         };
         if state.step == 0 {
             for (k, report) in self.report.contacts.iter_mut().enumerate() {

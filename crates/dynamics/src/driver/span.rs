@@ -3,20 +3,15 @@
 use std::ops::Range;
 
 use carom_algebra::Interrupt;
-use carom_contact::law::Status;
-use carom_nonsmooth::Compliance;
+use carom_nonsmooth::{CandidateData, Compliance, Condensed, ContactSolver, PointForces, Unsolved};
 
-use crate::coulomb::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
 use crate::groups::{Masses, OfGroup, PointRows};
-use crate::interface::{Candidate, Failure, Interface};
 
 /// The candidates of all groups, group after group, and what their problems have in common.
 #[derive(Clone, Copy)]
 pub(super) struct Candidates<'a> {
     pub(super) points: &'a [u32],
-    pub(super) data: &'a [Candidate],
-    /// Empty without friction.
-    pub(super) friction: &'a [Tangential],
+    pub(super) data: &'a CandidateData,
     /// Rows of all points.
     pub(super) rows: PointRows<'a>,
     pub(super) masses: Masses<'a>,
@@ -40,28 +35,13 @@ impl Candidates<'_> {
     }
 }
 
-/// What is found for a candidate.
-#[derive(Clone, Copy)]
-pub(super) struct Found {
-    pub(super) force: f64,
-    pub(super) tangential: [f64; 2],
-    pub(super) status: Status,
-    pub(super) slip: Slip,
-}
-
-/// A group without solution.
-pub(super) enum Unsolved {
-    Normal(Failure),
-    Friction(FrictionFailure),
-}
-
 /// Some groups, with what solving them needs.
 #[derive(Default)]
 pub(super) struct Span {
     /// The groups, as ranges of the candidates.
     pub(super) groups: Vec<Range<usize>>,
     /// Of each of their candidates.
-    pub(super) found: Vec<Found>,
+    pub(super) found: Vec<PointForces>,
     /// Most passes of a group without friction.
     pub(super) passes: usize,
     /// Candidates from which on statuses changed one at a time.
@@ -72,8 +52,7 @@ pub(super) struct Span {
     pub(super) unsolved: Option<(Range<usize>, Unsolved)>,
     of_group: OfGroup,
     version: u64,
-    interface: Interface,
-    coulomb: Coulomb,
+    solver: ContactSolver,
 }
 
 impl Span {
@@ -82,8 +61,7 @@ impl Span {
         self.found.clear();
         self.circled.clear();
         (self.passes, self.unsettled) = (0, None);
-        self.interface.interrupt.clone_from(of.interrupt);
-        self.coulomb.interrupt.clone_from(of.interrupt);
+        self.solver.heed(of.interrupt);
         let groups = std::mem::take(&mut self.groups);
         let solved = groups
             .iter()
@@ -97,58 +75,23 @@ impl Span {
         of: &Candidates,
         group: &Range<usize>,
     ) -> Result<(), (Range<usize>, Unsolved)> {
-        let own = of.friction.get(group.clone()).unwrap_or_default();
-        let solved = match own.iter().any(|own| own.mu > 0.0) {
-            true => self.solve_rubbing(of, group.clone()),
-            false => self.solve_normal(of, group.clone()),
-        };
-        solved.map_err(|failure| (group.clone(), failure))
-    }
-
-    /// One group without friction.
-    fn solve_normal(&mut self, of: &Candidates, group: Range<usize>) -> Result<(), Unsolved> {
+        let own = of.data.within(group.clone());
+        let rubs = own.friction.iter().any(|own| own.mu > 0.0);
         self.version += 1;
-        let compliance = of.compliance((group.clone(), false), &mut self.of_group);
-        let factors = [of.factors[0], of.factors[1]];
-        let problem = (compliance, self.version);
-        let solved = self
-            .interface
-            .solve(&of.data[group.clone()], problem, factors);
-        solved.map_err(Unsolved::Normal)?;
-        self.passes = self.passes.max(self.interface.passes);
-        let circled = self.interface.circled;
-        self.circled.extend(circled.map(|k| group.start + k));
-        let unsettled = self.interface.unsettled.map(|k| group.start + k);
-        self.unsettled = self.unsettled.or(unsettled);
-        let both = self.interface.forces.iter().zip(&self.interface.statuses);
-        self.found.extend(both.map(|(&force, &status)| Found {
-            force,
-            tangential: [0.0; 2],
-            status,
-            slip: Slip::Open,
-        }));
-        Ok(())
-    }
-
-    /// One group with friction.
-    fn solve_rubbing(&mut self, of: &Candidates, group: Range<usize>) -> Result<(), Unsolved> {
-        let compliance = of.compliance((group.clone(), true), &mut self.of_group);
-        let posed = Posed {
-            candidates: &of.data[group.clone()],
-            friction: &of.friction[group],
-            tangents: of.rows.tangents.len(),
-            d: compliance,
+        let problem = Condensed {
+            d: of.compliance((group.clone(), rubs), &mut self.of_group),
+            version: self.version,
             s: of.factors,
+            tangents: if rubs { of.rows.tangents.len() } else { 0 },
             tolerance: of.tolerance,
         };
-        self.coulomb.solve(&posed).map_err(Unsolved::Friction)?;
-        let solver = &self.coulomb;
-        self.found.extend((0..solver.forces.len()).map(|k| Found {
-            force: solver.forces[k],
-            tangential: solver.tangential[k],
-            status: solver.statuses[k],
-            slip: solver.slips[k],
-        }));
+        let solved = self.solver.solve(own, &problem);
+        solved.map_err(|failure| (group.clone(), failure))?;
+        self.found.extend(&self.solver.found);
+        self.passes = self.passes.max(self.solver.passes);
+        let place = |k: usize| group.start + k;
+        self.circled.extend(self.solver.circled.map(place));
+        self.unsettled = self.unsettled.or(self.solver.unsettled.map(place));
         Ok(())
     }
 

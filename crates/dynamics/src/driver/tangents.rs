@@ -146,15 +146,21 @@ impl Contacts {
     }
 
     /// Coefficients of friction with which a point sticks and slides in the step, by the rate of its sliding at the start.
-    pub(super) fn coefficients(&self, attempt: &Attempt, point: usize) -> (f64, f64) {
-        let friction = &attempt.system.contacts[attempt.system.contact_of(point)].friction;
+    fn coefficients(&self, attempt: &Attempt, point: usize) -> (f64, f64) {
+        let law = attempt.system.contacts[attempt.system.contact_of(point)]
+            .friction
+            .get();
+        (law.sticks(), law.slides(self.sliding_speed(attempt, point)))
+    }
+
+    /// Rate at which a point slides at the start of the step, m/s.
+    pub(super) fn sliding_speed(&self, attempt: &Attempt, point: usize) -> f64 {
         let mut square = 0.0;
         for rows in &self.pairing.tangents[..attempt.system.tangents()] {
             let rate = rows.product(point, &attempt.state.motion.v) + rows.rate(point);
             square += rate * rate;
         }
-        let law = friction.get();
-        (law.sticks(), law.slides(square.sqrt()))
+        square.sqrt()
     }
 
     /// Way that a point slides along one tangent in the step that was taken, m.

@@ -9,7 +9,7 @@ use carom_arlequin::{Coupling, Model as Side, Models, Overlap, Region, Weighting
 use carom_bodies::{BodySpec, CellWeights, Kinematics};
 use carom_dynamics::scheme::{CentralDifference, Theta};
 use carom_dynamics::{
-    Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper, System, march,
+    Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper, march,
 };
 use carom_mesh::{ElementId, Surface, generate};
 use carom_output::compare::Recorder;

@@ -32,7 +32,7 @@ impl CrossZoneContacts {
                 let tangential = friction.iter_mut().zip(&own[1..]);
                 tangential.for_each(|(t, own)| *t = *own);
             }
-            interface.status[point] = self.solver.found(k).status;
+            interface.status[point] = self.solver.found[k].status;
             interface.watched[point] = true;
         }
         interface.carried.clone_from(&interface.force);
@@ -104,7 +104,7 @@ impl CrossZoneContacts {
     /// Status of friction that the last solve found of a point.
     fn slip(&self, point: usize) -> Slip {
         let place = self.candidates.points.binary_search(&(point as u32));
-        place.map_or(Slip::Open, |k| self.solver.found(k).slip)
+        place.map_or(Slip::Open, |k| self.solver.found[k].slip)
     }
 
     /// Forgets the forces and works so far.

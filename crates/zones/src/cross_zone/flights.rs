@@ -38,7 +38,7 @@ impl CrossZoneContacts {
             // without forces: of a candidate its own rate at the end, of others that of the motion
             let candidate = self.candidates.points.binary_search(&(point as u32)).ok();
             let free = candidate
-                .and_then(|k| self.solver.candidates.get(k))
+                .and_then(|k| self.described.normal.get(k))
                 .map_or_else(
                     || self.ended(drivers, point),
                     |candidate| candidate.rate_free,

@@ -1,10 +1,9 @@
 //! The forces of contacts between zones that a pass asks for.
 
-use carom_contact::law::{Level, Local, Status};
+use carom_contact::law::{Level, Status};
 use carom_dynamics::Driver;
-use carom_nonsmooth::coulomb::{Slip, Tangential};
-use carom_nonsmooth::interface::Candidate;
-use carom_nonsmooth::{Compliance, Condensed};
+use carom_nonsmooth::coulomb::Slip;
+use carom_nonsmooth::{Compliance, Condensed, ContactPoint, PointForces};
 
 use super::CrossZoneContacts;
 use crate::ending::{GAIN, TOLERANCE, largest, rounding, speed};
@@ -24,14 +23,14 @@ impl CrossZoneContacts {
             return Ok(true);
         }
         self.describe(dt);
-        let solved = self.solver.solve(Condensed {
+        let problem = Condensed {
             d: Compliance::Dense(self.compliance.matrix()),
             version: self.compliance.version,
             s: [dt, 1.0, 1.0],
             tangents: self.candidates.tangents,
             tolerance: self.system.nonlinear.iteration.tolerance,
-        });
-        if let Err(cause) = solved {
+        };
+        if let Err(cause) = self.solver.solve(self.described.all(), &problem) {
             let first = self.candidates.points[0] as usize;
             return Err(Error::CrossZone {
                 step: step + 1,
@@ -66,8 +65,7 @@ impl CrossZoneContacts {
         let (system, interface) = (&*self.system, &self.state.interface);
         let (rows, start) = (&self.geometry.pairing.rows, &self.geometry.start);
         let tangents = &self.geometry.pairing.tangents;
-        self.solver.candidates.clear();
-        self.solver.friction.clear();
+        self.described.clear();
         for (i, &point) in candidates.points.iter().enumerate() {
             let point = point as usize;
             let (contact, place) = system.point(point);
@@ -85,54 +83,49 @@ impl CrossZoneContacts {
             };
             let captured = contact.law.get().capture() * dt;
             let at_start = rows.gap(point) - captured * started;
-            self.solver.candidates.push(Candidate {
-                law: contact.law,
-                local: Local {
-                    area: carrier.area,
-                    share: carrier.share,
-                    gap: rows.gap(point),
-                    // what lasts or opens has nothing to give back
-                    rate: if strikes { started } else { 0.0 },
-                    start: 0.0,
-                    gap_free: match level {
-                        Level::Rate => rows.gap(point),
-                        _ => at_start + way * dt * mean,
-                    },
-                    dt,
-                    tolerance: system.tolerance_at(point),
-                    crush: interface.crush[point],
-                    at: [0.0; 2],
-                },
-                rate_free,
-                status: match candidates.forces[row] != 0.0 {
-                    true => closed(interface.status[point]),
-                    false => interface.status[point],
-                },
-                faces_itself: false,
-                instant: [way, rate],
-            });
-            if candidates.tangents == 0 {
-                continue;
-            }
             let (mut along, mut force, mut square) = ([0.0; 2], [0.0; 2], 0.0);
             for k in 0..candidates.tangents {
                 along[k] = free(row + 1 + k);
                 force[k] = candidates.forces[row + 1 + k];
                 square += tangents[k].product(point, &start[1]).powi(2);
             }
-            let law = system.contacts[system.contact_of(point)].friction.get();
-            let (mu, slides) = (law.sticks(), law.slides(square.sqrt()));
-            self.solver.friction.push(Tangential {
-                mu,
-                sliding: (slides < mu).then_some(slides),
-                free: along,
-                slip: match force == [0.0; 2] {
-                    true => Slip::Open,
-                    false => Slip::Stick,
+            let described = ContactPoint {
+                law: contact.law,
+                area: carrier.area,
+                share: carrier.share,
+                tolerance: system.tolerance_at(point),
+                faces_itself: false,
+                crush: interface.crush[point],
+                gap: rows.gap(point),
+                rate: started,
+                // what lasts or opens has nothing to give back
+                rebound: if strikes { 1.0 } else { 0.0 },
+                in_way: 0.0,
+                dt,
+                last: PointForces {
+                    normal: candidates.forces[row],
+                    tangential: force,
+                    status: match candidates.forces[row] != 0.0 {
+                        true => closed(interface.status[point]),
+                        false => interface.status[point],
+                    },
+                    slip: match force == [0.0; 2] {
+                        true => Slip::Open,
+                        false => Slip::Stick,
+                    },
                 },
-                force,
-                pressed: candidates.forces[row],
-            });
+            };
+            let gap_free = match level {
+                Level::Rate => rows.gap(point),
+                _ => at_start + way * dt * mean,
+            };
+            let candidate = described.candidate([gap_free, rate_free], [way, rate]);
+            self.described.normal.push(candidate);
+            if candidates.tangents > 0 {
+                let friction = &system.contacts[system.contact_of(point)].friction;
+                let tangential = described.tangential(friction, square.sqrt(), along);
+                self.described.friction.push(tangential);
+            }
         }
     }
 
@@ -140,7 +133,7 @@ impl CrossZoneContacts {
     fn found(&self) -> Vec<f64> {
         let tangents = self.candidates.tangents;
         let of = |candidate: usize| {
-            let found = self.solver.found(candidate);
+            let found = &self.solver.found[candidate];
             let [one, two] = found.tangential;
             [found.normal, one, two].into_iter().take(1 + tangents)
         };

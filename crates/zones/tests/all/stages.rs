@@ -8,7 +8,7 @@ use carom_contact::{Law, Plane, Sliding};
 use carom_dynamics::scheme::Theta;
 use carom_dynamics::{
     Amplitude, Model, ModelBody, ModelConstraint, ModelContact, ModelLink, ModelTarget, Preload,
-    Scheme, Stepper, System,
+    Scheme, Stepper,
 };
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};

@@ -6,9 +6,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_contact::{Law, Plane};
 use carom_dynamics::scheme::{CentralDifference, Theta};
-use carom_dynamics::{
-    Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper, System,
-};
+use carom_dynamics::{Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper};
 use carom_materials::Elastic;
 use carom_mesh::{Surface, generate};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
