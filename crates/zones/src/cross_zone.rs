@@ -54,6 +54,8 @@ pub struct CrossZoneState {
     pub records: Records,
     /// Work of each on both its sides, without and of friction, J.
     pub works: Vec<[f64; 2]>,
+    /// By zone, nodal forces of the last outer step, N; empty of zones that take forces as those of a step.
+    pub pushed: Vec<Vec<f64>>,
 }
 
 /// Contacts between zones.
@@ -83,6 +85,7 @@ impl CrossZoneContacts {
         state.interface.is_of(self.system.points())
             && state.records.are_of(&self.system)
             && state.works.len() == self.state.works.len()
+            && (state.pushed.iter().map(Vec::len)).eq(self.state.pushed.iter().map(Vec::len))
     }
 
     /// `None` where no contact is between zones.
@@ -105,6 +108,10 @@ impl CrossZoneContacts {
         model.constraints = Vec::new();
         let system = System::whole(model)?;
         let count = contacts.len();
+        let room = |driver: &Driver| match driver.jumps() {
+            true => vec![0.0; driver.system().unknowns()],
+            false => Vec::new(),
+        };
         let scheme = |&contact: &usize| zoned.zones[zoned.zones_of(contact)[0]].scheme;
         Ok(Some(CrossZoneContacts {
             schemes: contacts.iter().map(scheme).collect(),
@@ -118,6 +125,7 @@ impl CrossZoneContacts {
                 interface: without_forces(&system),
                 records: Records::of(&system),
                 works: vec![[0.0; 2]; count],
+                pushed: drivers.iter().map(room).collect(),
             },
             now: vec![[0.0; 2]; count],
             change: 0.0,
@@ -159,6 +167,41 @@ impl CrossZoneContacts {
     pub(crate) fn begin_pass(&mut self) {
         self.candidates.rates.fill(0.0);
         self.now.fill([0.0; 2]);
+    }
+
+    /// Whether forces of a zone begin with a jump of its acceleration.
+    pub(crate) fn jumps(&self, zone: usize) -> bool {
+        !self.state.pushed[zone].is_empty()
+    }
+
+    /// Makes the forces of this pass, in place of those of the last outer step, stand on a zone from the start of the outer step on.
+    ///
+    /// # Errors
+    /// A mass that is not positive definite.
+    pub(crate) fn jump(&self, zone: usize, driver: &mut Driver) -> Result<(), Error> {
+        let before = &self.state.pushed[zone];
+        if before.is_empty() {
+            return Ok(());
+        }
+        let mut change = self.pushed(zone, before.len());
+        change
+            .iter_mut()
+            .zip(before)
+            .for_each(|(change, before)| *change -= before);
+        match change.iter().all(|change| *change == 0.0) {
+            true => Ok(()),
+            false => Ok(driver.jump_link_force(&change)?),
+        }
+    }
+
+    /// Keeps the forces that stand on the zones.
+    fn keep_pushed(&mut self) {
+        let mut pushed = std::mem::take(&mut self.state.pushed);
+        let zones = pushed.iter_mut().enumerate();
+        for (zone, pushed) in zones.filter(|(_, pushed)| !pushed.is_empty()) {
+            *pushed = self.pushed(zone, pushed.len());
+        }
+        self.state.pushed = pushed;
     }
 
     /// Adds the forces of this pass to those on a zone, N.

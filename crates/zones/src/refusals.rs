@@ -7,7 +7,7 @@ use carom_contact::Integration;
 
 use crate::error::Error;
 use crate::model::{LinkKind, ModelZone, Zoned};
-use carom_schemes::step_map::Impulse;
+use carom_dynamics::StandingForce;
 use carom_system::{self as system, ModelBody, ModelLink, Refused};
 
 /// What numbers of inner steps links with multipliers at every inner instant take.
@@ -158,15 +158,13 @@ fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
              outer step alone; take nodes with mass",
         );
     }
-    let plain = |zone: usize| {
-        let map = zoned.zones[zone].scheme.get().step_map(zoned.model.dt);
-        map.contact_impulse == Impulse::weights(0.0, 1.0) && map.impulse == map.contact_impulse
-    };
-    match zoned.zones_of(contact).into_iter().all(plain) {
+    let stands = |zone: usize| StandingForce::of(zoned.zones[zone].scheme).is_some();
+    match zoned.zones_of(contact).into_iter().all(stands) {
         true => None,
         false => Some(
-            "a force P that stands over the outer step DT gives a zone of steps h the impulse DT P in schemes whose contact force is a mean over the \
-             step, theta and energy-momentum, and DT P + c h (P - P_before) in others: action and reaction would differ; take one of these, or equal steps",
+            "a force that stands over the outer step begins with a jump M⁻¹ ΔF of the acceleration at its start, and the scheme keeps contact forces out \
+             of its acceleration, or remembers more than that; take theta, energy-momentum, newmark, hht, generalised-alpha or central-difference, or equal \
+             steps",
         ),
     }
 }
