@@ -58,7 +58,6 @@ pub use carom_signals::{Amplitude, Held};
 pub use control::{Attempts, Control, Event, adapt};
 pub use costs::{Costs, LONGEST, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};
-pub use driver::force_jump::StandingForce;
 pub use driver::linearised;
 pub use driver::linked;
 pub use driver::paired;

@@ -1,7 +1,8 @@
 //! Contacts between zones that step apart: forces that stand over the outer step.
 //!
 //! A force that is the same in all steps of the outer one gives both sides the same impulse, DT P, whatever their numbers of
-//! steps. Points are paired where the captured configuration of the outer step has them. With v_z what the steps of zone z make of P,
+//! steps: zones whose schemes keep an acceleration in their state take it from a jump of the acceleration at the start of the outer step on
+//! ([`Driver::jump_link_force`]). Points are paired where the captured configuration of the outer step has them. With v_z what the steps of zone z make of P,
 //!
 //! * a law in the gap holds at the end of the outer step, `g + Σ_z N_z Δu_z`,
 //! * a law with a compliance for the mean of the outer step, `g + ½ Σ_z N_z Δu_z` and `ġ = Σ_z N_z Δu_z / DT`: the spring of a penalty

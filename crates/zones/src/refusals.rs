@@ -7,7 +7,6 @@ use carom_contact::Integration;
 
 use crate::error::Error;
 use crate::model::{LinkKind, ModelZone, Zoned};
-use carom_dynamics::StandingForce;
 use carom_system::{self as system, ModelBody, ModelLink, Refused};
 
 /// What numbers of inner steps links with multipliers at every inner instant take.
@@ -158,13 +157,8 @@ fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
              outer step alone; take nodes with mass",
         );
     }
-    let stands = |zone: usize| StandingForce::of(zoned.zones[zone].scheme).is_some();
-    match zoned.zones_of(contact).into_iter().all(stands) {
-        true => None,
-        false => Some(
-            "a force that stands over the outer step begins with a jump M⁻¹ ΔF of the acceleration at its start, and the scheme keeps contact forces out \
-             of its acceleration, or remembers more than that; take theta, energy-momentum, newmark, hht, generalised-alpha or central-difference, or equal \
-             steps",
-        ),
-    }
+    of_model.law.get().projects().then_some(
+        "the projection at closure makes the velocity at the end of a step of the zone agree with the contact, and this contact begins at the start of \
+         the outer step, whose steps end apart; take projection = false",
+    )
 }

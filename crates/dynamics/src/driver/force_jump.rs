@@ -20,49 +20,19 @@ use crate::error::Error;
 use crate::operator::Operators;
 use crate::resultant::Resultant;
 use crate::scheme::Scheme;
-use crate::step_map::{Impulse, Row, StepMap};
+use crate::step_map::Impulse;
 use crate::system::System;
 
-/// How a scheme takes a force from outside that stands over steps of any number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum StandingForce {
-    /// As it is in each step: its balance is that of the step.
-    OfStep,
-    /// From a jump of the acceleration at its start on.
-    WithJump,
-}
-
-impl StandingForce {
-    /// `None` where the impulse of such a force is not its time times the force.
-    pub fn of(scheme: Scheme) -> Option<StandingForce> {
-        let (scheme, dt) = (scheme.get(), 1.0);
-        let map = scheme.step_map(dt);
-        if map.impulse == Impulse::weights(0.0, 1.0) {
-            return Some(StandingForce::OfStep);
-        }
-        let with_jump = scheme.keeps_acceleration() && stands(&map, dt);
-        with_jump.then_some(StandingForce::WithJump)
-    }
-}
-
-/// Whether an acceleration that stands, c at the start and x = c at the end, is in balance with a force M c and changes the velocity by dt c.
-fn stands(map: &StepMap, dt: f64) -> bool {
-    let near = |sum: f64, whole: f64| (sum - whole).abs() <= 1e-12;
-    // what contacts of its own give by themselves is in no acceleration
-    let acceleration = Row {
-        c: 0.0,
-        ..map.acceleration
-    };
-    acceleration == Row::UNKNOWN
-        && !map.has_memory()
-        && near(map.inertia.a + map.inertia.x, 1.0)
-        && near(map.velocity.a + map.velocity.x, dt)
+/// Whether a force that stands over steps of a scheme begins with a jump of the acceleration; otherwise the balance of each step is that of
+/// its mean force, and nothing of it remains.
+fn jumps(scheme: Scheme) -> bool {
+    scheme.get().step_map(1.0).impulse != Impulse::weights(0.0, 1.0)
 }
 
 impl Driver {
     /// Whether forces that stand begin with a jump of the acceleration.
     pub fn jumps(&self) -> bool {
-        StandingForce::of(self.attempt.system.scheme) == Some(StandingForce::WithJump)
+        jumps(self.attempt.system.scheme)
     }
 
     /// Adds `change` (N, by unknown) to the force of links at the present instant, and to the acceleration what it gives.
@@ -131,5 +101,38 @@ impl Links {
         mass.begin(&free, &mut half);
         mass.end(&mut half, &mut given);
         Ok(given)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::jumps;
+    use crate::scheme::{EnergyMomentum, Scheme};
+    use crate::step_map::Row;
+
+    /// With c at the start and x = c at the end a force M c is in balance, and changes the velocity by dt c; the acceleration has no other memory,
+    /// and what contacts of the zone give by themselves is not in it.
+    #[test]
+    fn an_acceleration_that_stands_is_in_balance_with_its_force_under_every_scheme() {
+        let dt = 0.3;
+        let mut schemes = Scheme::registered();
+        schemes.push(Scheme::EnergyMomentum(EnergyMomentum {}));
+        let (all, mut with_jump) = (schemes.len(), 0);
+        for scheme in schemes.into_iter().filter(|scheme| jumps(*scheme)) {
+            with_jump += 1;
+            let map = scheme.get().step_map(dt);
+            assert!(scheme.get().keeps_acceleration(), "{scheme:?}");
+            let of_forces = Row {
+                c: 0.0,
+                ..map.acceleration
+            };
+            assert_eq!(of_forces, Row::UNKNOWN, "{scheme:?}");
+            assert!(!map.has_memory(), "{scheme:?}");
+            let balance = map.inertia.a + map.inertia.x - 1.0;
+            let velocity = map.velocity.a + map.velocity.x - dt;
+            assert!(balance.abs() < 1e-15, "{scheme:?}: {balance}");
+            assert!(velocity.abs() < 1e-15, "{scheme:?}: {velocity}");
+        }
+        assert!(0 < with_jump && with_jump < all, "{with_jump} of {all}");
     }
 }

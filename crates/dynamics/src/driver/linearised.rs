@@ -13,7 +13,7 @@ use super::owners::Attempt;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
 use crate::scheme::{Scheme, Theta};
-use crate::step_map::{Row, StepMap};
+use crate::step_map::StepMap;
 use crate::system::{LinkRow, Motion, System, on, push_cliques};
 
 /// How forces on rows run over some steps.
@@ -21,7 +21,7 @@ use crate::system::{LinkRow, Motion, System, on, push_cliques};
 pub enum Growth {
     /// They grow linearly from 0 to 1.
     Linear,
-    /// They are 1 from the start on, where the acceleration jumps with them ([`StandingForce`](crate::StandingForce)).
+    /// They are 1 from the start on, where the acceleration jumps with them ([`Driver::jumps`]).
     Constant,
 }
 

@@ -38,7 +38,7 @@ mod factored_step;
 mod far;
 mod floating;
 mod followed;
-pub mod force_jump;
+mod force_jump;
 mod forces;
 mod friction;
 mod held;
