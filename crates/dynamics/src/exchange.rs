@@ -142,6 +142,16 @@ impl Exchange {
         }
     }
 
+    /// Adds to the forces of loads, supports and links at the present instant.
+    pub(crate) fn jump_force(&mut self, system: &System, force: impl Fn(usize) -> f64) {
+        for (part, range) in self.parts.iter_mut().zip(&system.parts) {
+            let jump = total(system, range, &force);
+            for i in 0..3 {
+                part.before[0][i] += jump[i];
+            }
+        }
+    }
+
     /// Sets the forces of loads, supports and links that the next step begins with.
     pub(crate) fn renew(&mut self, system: &System, force: impl Fn(usize) -> f64) {
         for (part, range) in self.parts.iter_mut().zip(&system.parts) {

@@ -310,6 +310,15 @@ impl Ledger {
         self.resized.add(lost);
     }
 
+    /// Forces of links (N) jump by the first of these at the present instant, those of supports by the second, and with them the acceleration, which
+    /// gives the energy of the scheme `term` more (J) without work.
+    pub(crate) fn jump_force(&mut self, [links, supports]: [Resultant; 2], term: f64) {
+        self.forces.links = self.forces.links.plus(&links);
+        self.forces.supports = self.forces.supports.plus(&supports);
+        self.resize_to(self.balance.scheme_energy + term);
+        self.balance.scheme_energy += term;
+    }
+
     /// What the energy that the scheme balances has gained since the start beyond the work from outside, J; not by the size of
     /// the step alone.
     pub fn free_energy(&self) -> f64 {

@@ -39,6 +39,13 @@ pub(crate) const CHECK: Check = Check {
             ("theta 0.5 and 1", [theta(0.5), theta(1.0)], 1),
             ("newmark and central difference", [newmark, explicit], 1),
             ("theta 0.5, four steps to one", [theta(0.5); 2], 4),
+            ("newmark, four steps to one", [newmark; 2], 4),
+            ("central difference, four steps to one", [explicit; 2], 4),
+            (
+                "newmark and central difference, four steps to one",
+                [newmark, explicit],
+                4,
+            ),
             (
                 "theta 0.5 and 1, four steps to one",
                 [theta(0.5), theta(1.0)],

@@ -4,6 +4,7 @@ use std::mem::take;
 
 use crate::error::Error;
 use crate::link_solver::OuterResponse;
+use crate::step::changes_state;
 use crate::zones::{Kept, Zones};
 use carom_dynamics::{Attempts, Driver, adapt};
 use carom_system::Adaptive;
@@ -61,7 +62,7 @@ impl Zones {
         self.first_cut = f64::INFINITY;
         self.products[1] = 0;
         for (k, driver) in self.drivers.iter().enumerate() {
-            if self.substeps[k] > 1
+            if changes_state((&self.substeps, &self.between), k)
                 && let Some(saved) = &mut self.saved[k]
             {
                 saved.clone_from(driver.state());

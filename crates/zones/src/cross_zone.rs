@@ -1,7 +1,8 @@
 //! Contacts between zones that step apart: forces that stand over the outer step.
 //!
 //! A force that is the same in all steps of the outer one gives both sides the same impulse, DT P, whatever their numbers of
-//! steps. Points are paired where the captured configuration of the outer step has them. With v_z what the steps of zone z make of P,
+//! steps: zones whose schemes keep an acceleration in their state take it from a jump of the acceleration at the start of the outer step on
+//! ([`Driver::jump_link_force`]). Points are paired where the captured configuration of the outer step has them. With v_z what the steps of zone z make of P,
 //!
 //! * a law in the gap holds at the end of the outer step, `g + Σ_z N_z Δu_z`,
 //! * a law with a compliance for the mean of the outer step, `g + ½ Σ_z N_z Δu_z` and `ġ = Σ_z N_z Δu_z / DT`: the spring of a penalty
@@ -54,6 +55,8 @@ pub struct CrossZoneState {
     pub records: Records,
     /// Work of each on both its sides, without and of friction, J.
     pub works: Vec<[f64; 2]>,
+    /// By zone, nodal forces of the last outer step, N; empty of zones that take forces as those of a step.
+    pub pushed: Vec<Vec<f64>>,
 }
 
 /// Contacts between zones.
@@ -84,6 +87,7 @@ impl CrossZoneContacts {
         state.interface.is_of(self.system.points())
             && state.records.are_of(&self.system)
             && state.works.len() == self.state.works.len()
+            && (state.pushed.iter().map(Vec::len)).eq(self.state.pushed.iter().map(Vec::len))
     }
 
     /// `None` where no contact is between zones.
@@ -106,6 +110,10 @@ impl CrossZoneContacts {
         model.constraints = Vec::new();
         let system = System::whole(model)?;
         let count = contacts.len();
+        let room = |driver: &Driver| match driver.jumps() {
+            true => vec![0.0; driver.system().unknowns()],
+            false => Vec::new(),
+        };
         let scheme = |&contact: &usize| zoned.zones[zoned.zones_of(contact)[0]].scheme;
         Ok(Some(CrossZoneContacts {
             schemes: contacts.iter().map(scheme).collect(),
@@ -120,6 +128,7 @@ impl CrossZoneContacts {
                 interface: without_forces(&system),
                 records: Records::of(&system),
                 works: vec![[0.0; 2]; count],
+                pushed: drivers.iter().map(room).collect(),
             },
             now: vec![[0.0; 2]; count],
             change: 0.0,
@@ -161,6 +170,41 @@ impl CrossZoneContacts {
     pub(crate) fn begin_pass(&mut self) {
         self.candidates.rates.fill(0.0);
         self.now.fill([0.0; 2]);
+    }
+
+    /// Whether forces of a zone begin with a jump of its acceleration.
+    pub(crate) fn jumps(&self, zone: usize) -> bool {
+        !self.state.pushed[zone].is_empty()
+    }
+
+    /// Makes the forces of this pass, in place of those of the last outer step, stand on a zone from the start of the outer step on.
+    ///
+    /// # Errors
+    /// A mass that is not positive definite.
+    pub(crate) fn jump(&self, zone: usize, driver: &mut Driver) -> Result<(), Error> {
+        let before = &self.state.pushed[zone];
+        if before.is_empty() {
+            return Ok(());
+        }
+        let mut change = self.pushed(zone, before.len());
+        change
+            .iter_mut()
+            .zip(before)
+            .for_each(|(change, before)| *change -= before);
+        match change.iter().all(|change| *change == 0.0) {
+            true => Ok(()),
+            false => Ok(driver.jump_link_force(&change)?),
+        }
+    }
+
+    /// Keeps the forces that stand on the zones.
+    fn keep_pushed(&mut self) {
+        let mut pushed = std::mem::take(&mut self.state.pushed);
+        let zones = pushed.iter_mut().enumerate();
+        for (zone, pushed) in zones.filter(|(_, pushed)| !pushed.is_empty()) {
+            *pushed = self.pushed(zone, pushed.len());
+        }
+        self.state.pushed = pushed;
     }
 
     /// Adds the forces of this pass to those on a zone, N.

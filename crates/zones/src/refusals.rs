@@ -7,7 +7,6 @@ use carom_contact::Integration;
 
 use crate::error::Error;
 use crate::model::{LinkKind, ModelZone, Zoned};
-use carom_schemes::step_map::Impulse;
 use carom_system::{self as system, ModelBody, ModelLink, Refused};
 
 /// What numbers of inner steps links with multipliers at every inner instant take.
@@ -158,15 +157,8 @@ fn refused(zoned: &Zoned, contact: usize) -> Option<&'static str> {
              outer step alone; take nodes with mass",
         );
     }
-    let plain = |zone: usize| {
-        let map = zoned.zones[zone].scheme.get().step_map(zoned.model.dt);
-        map.contact_impulse == Impulse::weights(0.0, 1.0) && map.impulse == map.contact_impulse
-    };
-    match zoned.zones_of(contact).into_iter().all(plain) {
-        true => None,
-        false => Some(
-            "a force P that stands over the outer step DT gives a zone of steps h the impulse DT P in schemes whose contact force is a mean over the \
-             step, theta and energy-momentum, and DT P + c h (P - P_before) in others: action and reaction would differ; take one of these, or equal steps",
-        ),
-    }
+    of_model.law.get().projects().then_some(
+        "the projection at closure makes the velocity at the end of a step of the zone agree with the contact, and this contact begins at the start of \
+         the outer step, whose steps end apart; take projection = false",
+    )
 }

@@ -12,6 +12,7 @@ use crate::link_solver::OuterResponse;
 use crate::model::Zoned;
 use crate::moves::Moves;
 use crate::stage::StageEnd;
+use crate::step::changes_state;
 use crate::turning::{ByZone, TurningLinks};
 use crate::zones::Zones;
 use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
@@ -58,13 +59,14 @@ impl Zones {
         let far: Vec<u32> = far.collect();
         let most = |(near, far): (&u32, &u32)| *near.max(far);
         let most: Vec<u32> = substeps.iter().zip(&far).map(most).collect();
-        let saved = drivers.iter().zip(&most).map(|(driver, m)| {
-            let inner = *m > 1;
-            inner.then(|| driver.state().clone())
+        let zones = drivers.iter().enumerate();
+        let saved = zones.map(|(zone, driver)| {
+            changes_state((&most, &between), zone).then(|| driver.state().clone())
         });
+        let saved = saved.collect();
         let mut zones = Zones {
             between,
-            saved: saved.collect(),
+            saved,
             origins: drivers.iter().map(Origin::of).collect(),
             stale: false,
             drivers,

@@ -1,5 +1,6 @@
 //! An attempt at an outer step: the passes over it, and what it leaves.
 
+use crate::cross_zone::CrossZoneContacts;
 use crate::error::Error;
 use crate::model::LinkKind;
 use crate::passes::{record, sample};
@@ -76,9 +77,8 @@ impl Zones {
             last.copy_from_slice(before);
         }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
-            if self.substeps[k] > 1
-                && let Some(saved) = &self.saved[k]
-            {
+            let changes = changes_state((&self.substeps, &self.between), k);
+            if changes && let Some(saved) = &self.saved[k] {
                 driver.go_back(saved);
             }
         }
@@ -91,7 +91,7 @@ impl Zones {
             links.begin(&self.drivers, self.dt, &mut self.rows);
         }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
-            if self.substeps[k] == 1 {
+            if !changes_state((&self.substeps, &self.between), k) {
                 driver.prepare()?;
             }
         }
@@ -146,9 +146,10 @@ impl Zones {
     /// Takes the steps of one zone with the multipliers as they stand.
     fn ramp_zone(&mut self, k: usize) -> Result<(), Error> {
         let m = self.substeps[k];
-        if m > 1
+        let changes = changes_state((&self.substeps, &self.between), k);
+        if changes
             && let Some(saved) = &self.saved[k]
-            && self.drivers[k].state().step != saved.step
+            && (self.drivers[k].state().step != saved.step || self.passes > 1)
         {
             self.drivers[k].go_back(saved);
         }
@@ -172,8 +173,11 @@ impl Zones {
             }
             if let Some(between) = &self.between {
                 between.push(k, driver);
+                if j == 0 {
+                    between.jump(k, driver)?;
+                }
             }
-            if m > 1 {
+            if changes {
                 driver.prepare()?;
             }
             driver.complete()?;
@@ -206,4 +210,12 @@ impl Zones {
             }
         }
     }
+}
+
+/// Whether a pass changes the state of a zone: by inner steps, or by forces that jump at the start of the outer step.
+pub(crate) fn changes_state(
+    (substeps, between): (&[u32], &Option<CrossZoneContacts>),
+    zone: usize,
+) -> bool {
+    substeps[zone] > 1 || between.as_ref().is_some_and(|between| between.jumps(zone))
 }

@@ -47,7 +47,7 @@ pub(super) fn by_zones(context: &Context, error: &carom_zones::Error) -> Problem
             Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
                 "one zone for both sides",
                 "zones of equal steps and of one scheme",
-                "theta or energy-momentum in both zones, with node or mortar and nodes with mass",
+                "integration at nodes or by mortar, nodes with mass and no projection",
             ])
         }
         Error::Zone { zone, cause } => refused_zone(context, zone, cause),
@@ -133,7 +133,7 @@ fn refused_system(context: &Context, error: &Refusal) -> Problem {
             Problem::new(format!("contact.{contact}"), error.to_string()).accepted([
                 "one zone for both sides",
                 "zones of equal steps and of one scheme",
-                "theta or energy-momentum in both zones, with node or mortar and nodes with mass",
+                "integration at nodes or by mortar, nodes with mass and no projection",
             ])
         }
         Refusal::SchemesOfPart { body, .. } => {

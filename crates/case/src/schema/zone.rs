@@ -8,7 +8,7 @@ use carom_quantities::{Coordinate, Length, Vector};
 use carom_schemes::Scheme;
 
 /// A zone: bodies with their own scheme and step. If a case has zones, every body is in one of them. The two sides of a
-/// contact may be in different ones; with unequal steps both zones have a scheme whose contact force is a mean over the step, theta or energy-momentum.
+/// contact may be in different ones, also with unequal steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct Zone {

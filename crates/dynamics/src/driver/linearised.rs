@@ -21,7 +21,7 @@ use crate::system::{LinkRow, Motion, System, on, push_cliques};
 pub enum Growth {
     /// They grow linearly from 0 to 1.
     Linear,
-    /// They are 1.
+    /// They are 1 from the start on, where the acceleration jumps with them ([`Driver::jumps`]).
     Constant,
 }
 
@@ -37,8 +37,11 @@ pub struct Steps {
 /// A zone linearised at an [`Origin`], without contact.
 pub struct LinearZone {
     map: StepMap,
-    /// Weights of the multipliers, and of velocities in the way, at the start and the end of a step.
-    weights: [[f64; 2]; 2],
+    /// Weights of the multipliers at the start and the end of a step.
+    weights: [f64; 2],
+    way: WayWeights,
+    /// Whether a step begins with the acceleration of the one before.
+    keeps: bool,
     /// Factors and stiffness; none where the driver has the factors, and its bodies are linear.
     own: Option<(Operators, Csr)>,
     motion: Motion,
@@ -63,7 +66,8 @@ impl Driver {
     /// An effective matrix that is not positive definite.
     pub fn linearised(&mut self, origin: &Origin) -> Result<LinearZone, Error> {
         let map = self.attempt.linear_map();
-        let weights = [self.link_weights(), self.way_weights()];
+        let weights = (self.link_weights(), self.way_weights());
+        let keeps = self.attempt.system.scheme.get().keeps_acceleration();
         self.parts.take_matrices(&mut self.attempt)?;
         let linear = self.attempt.system.bodies.iter().all(Body::is_linear);
         let own = match linear && !self.parts.effective.iterates() {
@@ -74,7 +78,11 @@ impl Driver {
                 Some((operators, stiffness))
             }
         };
-        Ok(LinearZone::new(&self.attempt.system, (map, weights), own))
+        Ok(LinearZone::new(
+            &self.attempt.system,
+            (map, weights, keeps),
+            own,
+        ))
     }
 
     /// What forces on rows, `Σ_r c_r λ_r` with multipliers λ by the number of the row, leave in the rows after some steps from rest.
@@ -89,6 +97,16 @@ impl Driver {
         out: Answered,
     ) -> Result<(), Error> {
         let system = Arc::clone(&self.attempt.system);
+        zone.rest();
+        if steps.growth == Growth::Constant && self.jumps() {
+            let mut force = vec![0.0; system.unknowns()];
+            for (row, terms) in rows {
+                for &(dof, c) in terms {
+                    force[dof as usize] += c * multipliers[*row as usize];
+                }
+            }
+            zone.motion.a = self.links.accelerations(&system, &force)?;
+        }
         if let Some((mut operators, stiffness)) = zone.own.take() {
             let forces = &mut |u: &[f64], f: &mut [f64]| stiffness.multiply(u, f);
             let mut of = Linearised {
@@ -154,7 +172,7 @@ impl Driver {
 impl LinearZone {
     fn new(
         system: &System,
-        (map, weights): (StepMap, [[f64; 2]; 2]),
+        (map, (weights, way), keeps): (StepMap, ([f64; 2], WayWeights), bool),
         own: Option<(Operators, Csr)>,
     ) -> LinearZone {
         let zeros = || vec![0.0; system.unknowns()];
@@ -171,6 +189,8 @@ impl LinearZone {
         LinearZone {
             map,
             weights,
+            way,
+            keeps,
             own,
             ended: motion.clone(),
             motion,
@@ -186,6 +206,50 @@ impl LinearZone {
         for vector in [u, v, a, memory] {
             vector.fill(0.0);
         }
+    }
+}
+
+/// Weights in the way of a step, of velocities (s) and accelerations (s²) at its start and its end.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WayWeights {
+    velocity: [f64; 2],
+    acceleration: [f64; 2],
+}
+
+impl WayWeights {
+    /// Those of a map whose unknown is the acceleration at the end, or changes the velocity there. `keeps`: whether the state keeps the
+    /// acceleration from which a step begins.
+    pub(super) fn of_map(map: &StepMap, keeps: bool) -> WayWeights {
+        let way = map.displacement;
+        if keeps && map.acceleration.x == 1.0 {
+            return WayWeights {
+                velocity: [way.v, 0.0],
+                acceleration: [way.a, way.x],
+            };
+        }
+        let end = way.x / map.velocity.x;
+        let kept = if keeps {
+            way.a - end * map.velocity.a
+        } else {
+            0.0
+        };
+        WayWeights {
+            velocity: [way.v - end * map.velocity.v, end],
+            acceleration: [kept, 0.0],
+        }
+    }
+
+    /// Way of a row from one motion to the next, m.
+    pub(super) fn of(&self, row: &LinkRow, motions: [&Motion; 2]) -> f64 {
+        let velocities = self.velocity.iter().zip(motions.map(|motion| &motion.v));
+        let accelerations = self
+            .acceleration
+            .iter()
+            .zip(motions.map(|motion| &motion.a));
+        let all = velocities.chain(accelerations);
+        // most have two of the four
+        let terms = all.filter(|(weight, _)| **weight != 0.0);
+        terms.map(|(weight, vector)| weight * on(row, vector)).sum()
     }
 }
 
@@ -205,19 +269,18 @@ impl Linearised<'_> {
         steps: Steps,
         out: Answered,
     ) {
-        zone.rest();
         out.ways.fill(0.0);
-        let [weights, of_way] = zone.weights;
+        let (weights, of_way) = (zone.weights, zone.way);
         for step in 0..steps.count {
             let part = |k: u32| f64::from(k) / f64::from(steps.count);
             let force = match steps.growth {
                 Growth::Linear => weights[0] * part(step) + weights[1] * part(step + 1),
                 Growth::Constant => 1.0,
             };
-            self.step(zone, step == 0, (rows, multipliers, force));
+            let at_rest = step == 0 && steps.growth == Growth::Linear;
+            self.step(zone, at_rest, (rows, multipliers, force));
             for (way, (_, terms)) in out.ways.iter_mut().zip(rows) {
-                let [start, end] = [&zone.motion.v, &zone.ended.v].map(|v| on(terms, v));
-                *way += of_way[0] * start + of_way[1] * end;
+                *way += of_way.of(terms, [&zone.motion, &zone.ended]);
             }
             std::mem::swap(&mut zone.motion, &mut zone.ended);
         }
@@ -263,7 +326,9 @@ impl Linearised<'_> {
         self.operators.end(half, x);
         map.displacement.whole(motion, x, none, &mut end.u);
         map.velocity.whole(motion, x, none, &mut end.v);
-        map.acceleration.whole(motion, x, none, &mut end.a);
+        if zone.keeps {
+            map.acceleration.whole(motion, x, none, &mut end.a);
+        }
         map.memory.whole(motion, x, none, &mut end.memory);
     }
 }

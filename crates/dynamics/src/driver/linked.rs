@@ -7,6 +7,7 @@
 use std::time::Instant;
 
 use super::Driver;
+use super::linearised::WayWeights;
 use super::paired::approaches;
 use crate::error::Error;
 use crate::report::Notices;
@@ -161,18 +162,22 @@ impl Driver {
         &self.attempt.vectors.load
     }
 
-    /// Weights of the velocities at the start and at the end of a step in its way, s: of the schemes whose way is one of velocities.
-    pub fn way_weights(&self) -> [f64; 2] {
-        let map = self.attempt.linear_map();
-        let end = map.displacement.x / map.velocity.x;
-        [map.displacement.v - end * map.velocity.v, end]
+    /// Weights of what a row does at the start and at the end of a step in its way.
+    pub fn way_weights(&self) -> WayWeights {
+        let keeps = self.attempt.system.scheme.get().keeps_acceleration();
+        WayWeights::of_map(&self.attempt.linear_map(), keeps)
     }
 
     /// Way of a row in the step just completed, m.
     pub fn row_way(&self, terms: &LinkRow) -> f64 {
-        let [start, end] = self.way_weights();
-        start * on(terms, &self.attempt.state.motion.v)
-            + end * on(terms, &self.attempt.next.motion.v)
+        let (map, push) = (self.attempt.linear_map(), &self.attempt.vectors.push);
+        let ends = [&self.attempt.state.motion, &self.attempt.next.motion];
+        let way = self.way_weights().of(terms, ends);
+        match push.is_empty() {
+            true => way,
+            // the acceleration at the end is the unknown without what contacts of the zone give by themselves
+            false => way - map.displacement.x * map.acceleration.c * on(terms, push),
+        }
     }
 
     /// Makes ready what the forces of links do not change, of a step that is linear in the unknown.

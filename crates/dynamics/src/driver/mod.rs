@@ -39,6 +39,7 @@ mod factored_step;
 mod far;
 mod floating;
 mod followed;
+mod force_jump;
 mod forces;
 mod held;
 mod identity;

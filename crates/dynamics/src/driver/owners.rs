@@ -32,6 +32,7 @@ use crate::costs::Phases;
 use crate::coulomb::{FrictionProblem, Slip};
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
+use crate::operator::Operators;
 use crate::report::Notices;
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
@@ -210,6 +211,8 @@ impl Parts {
 pub(super) struct Links {
     /// Forces of links in the step, N; empty without links.
     pub(super) force: Vec<f64>,
+    /// The mass, where such forces have jumped.
+    pub(super) mass: Option<Operators>,
     pub(super) multipliers: Multipliers,
     /// The rows of the links; those that turn as they are in the iteration.
     pub(super) rows: Arc<Vec<LinkRow>>,
@@ -224,6 +227,7 @@ impl Links {
         };
         Links {
             force: vec![0.0; unknowns],
+            mass: None,
             multipliers: Multipliers::new(system),
             rows: Arc::clone(&system.links.rows),
         }

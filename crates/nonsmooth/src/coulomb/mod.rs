@@ -21,10 +21,11 @@
 //! Where D is the product of the sparse rows of a lumped mass ([`crate::Lumped`]), sweeps are all, mixed after Anderson (`anderson.rs`): D is then as well conditioned as the
 //! masses of the nodes that touch are alike, and nothing grows faster than the number of points.
 //! Where D is not known, forces are found with the motion (`together.rs`).
-//! Laws that are not linear give their tangents, which are renewed around all of this (`renewed.rs`).
+//! Laws that are not linear give their tangents, which are renewed around all of this (`renewed.rs`). Tension that laws cut off acts on no other point (`cut.rs`).
 //! [`FrictionProblem::defect`] measures a solution by code that knows no solver.
 
 mod anderson;
+mod cut;
 mod defect;
 mod newton;
 mod posed;

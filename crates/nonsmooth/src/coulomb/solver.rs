@@ -119,6 +119,13 @@ impl Coulomb {
 
     /// Solves for the forces and statuses, with the relations of the candidates as they are.
     pub(super) fn settle(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {
+        self.settle_with_tension(problem)?;
+        self.cut_off(problem);
+        Ok(())
+    }
+
+    /// The same, where tension that laws cut off still acts on the other points.
+    pub(super) fn settle_with_tension(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {
         (self.passes, self.sweeps) = (0, 0);
         self.reversals.clear();
         self.reversals.resize(problem.len(), 0);

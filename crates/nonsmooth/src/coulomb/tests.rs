@@ -4,6 +4,7 @@ use carom_testing::Random;
 use super::*;
 use crate::interface::{Candidate, Interface};
 use crate::{Compliance, Lumped, Unknown};
+mod cut;
 mod of_laws;
 mod together;
 

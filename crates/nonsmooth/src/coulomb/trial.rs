@@ -206,7 +206,7 @@ impl Trial {
     }
 
     /// D p, and the sizes of its terms.
-    fn multiply(&mut self, problem: &Posed) {
+    pub(super) fn multiply(&mut self, problem: &Posed) {
         match problem.d {
             Compliance::Dense(d) => {
                 self.sizes.resize(problem.rows(), 0.0);

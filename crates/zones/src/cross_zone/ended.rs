@@ -58,6 +58,7 @@ impl CrossZoneContacts {
                 }
             }
         }
+        self.keep_pushed();
         self.add_records(&before, [time, dt]);
     }
 
@@ -111,6 +112,10 @@ impl CrossZoneContacts {
     pub(crate) fn restart(&mut self, drivers: &[Driver]) {
         self.state.interface = without_forces(&self.system);
         self.state.works.fill([0.0; 2]);
+        self.state
+            .pushed
+            .iter_mut()
+            .for_each(|pushed| pushed.fill(0.0));
         self.state.records = Records::of(&self.system);
         self.geometry.gather_start(drivers);
         self.geometry.pair(&self.system, (0.0, 0.0));
@@ -139,6 +144,7 @@ impl CrossZoneContacts {
         self.state.records.begin_dynamics();
         let of = (&*self.system, &self.geometry, &self.compliance.rigid);
         self.candidates.choose(of, &self.state.interface, 0.0);
+        self.keep_pushed();
     }
 
     /// Force of the candidates on a zone of so many unknowns, N.

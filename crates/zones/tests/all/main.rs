@@ -10,6 +10,7 @@ mod monolithic;
 mod schemes;
 mod schemes_apart;
 mod stages;
+mod standing;
 mod turning;
 mod whole;
 mod zones_nonlinear;

@@ -5,7 +5,7 @@ use carom_arlequin::trace;
 use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::law::Displacement;
 use carom_contact::{Law, Plane, Sliding};
-use carom_dynamics::scheme::Theta;
+use carom_dynamics::scheme::{CentralDifference, GeneralisedAlpha, Newmark, NonsmoothAlpha, Theta};
 use carom_dynamics::{
     Amplitude, Model, ModelBody, ModelConstraint, ModelContact, ModelLink, ModelTarget, Preload,
     Scheme, Stepper,
@@ -173,11 +173,24 @@ fn stacked(m: u32, (friction, angle): (f64, f64), staged: bool) -> Zoned {
     }
 }
 
+/// A scheme of each kind that takes forces which stand over the outer step: as those of a step, and from a jump of the acceleration on.
+fn kinds_of_schemes() -> [Scheme; 5] {
+    [
+        MID_POINT,
+        Scheme::Newmark(Newmark::default()),
+        Scheme::GeneralisedAlpha(GeneralisedAlpha::default()),
+        Scheme::NonsmoothAlpha(NonsmoothAlpha::default()),
+        Scheme::CentralDifference(CentralDifference {}),
+    ]
+}
+
 /// tan 10° is below the coefficient: the contact carries the whole weight in its two parts from the stage on, at the tolerance of the stage.
 #[test]
 fn a_block_stays_on_a_slope_by_the_friction_of_another_zone() {
-    for m in [1, 3] {
-        let zoned = stacked(m, (0.3, 10.0), true);
+    let schemes = kinds_of_schemes().into_iter();
+    for (scheme, m) in schemes.flat_map(|scheme| [(scheme, 1), (scheme, 3)]) {
+        let mut zoned = stacked(m, (0.3, 10.0), true);
+        zoned.zones[1].scheme = scheme;
         let mut run = whole(&zoned);
         let weight = 0.4 * 0.2 * RUBBER.density * GRAVITY;
         let (sin, cos) = f64::to_radians(10.0).sin_cos();
@@ -207,8 +220,10 @@ fn a_block_stays_on_a_slope_by_the_friction_of_another_zone() {
 /// contact, its work is what the balance loses, and momentum stays.
 #[test]
 fn friction_between_zones_of_unequal_steps_takes_what_it_should() {
-    for m in [1, 4] {
+    let schemes = kinds_of_schemes().into_iter();
+    for (scheme, m) in schemes.flat_map(|scheme| [(scheme, 1), (scheme, 4)]) {
         let mut zoned = stacked(m, (0.2, 0.0), false);
+        zoned.zones[0].scheme = scheme;
         zoned.model.bodies[1].velocity = [1.0, 0.0, 0.0];
         let mut run = whole(&zoned);
         let start = run.state().ledger.balance;

@@ -1,0 +1,168 @@
+//! Tension that laws cut off: the points that would pull have no force, normal or tangential, and the others are solved for without them.
+//!
+//! A law with a damper pulls where it lets go. Its force is then zero, and what it would have held back, the gaps and slidings of the points
+//! around it, must be known to their forces: otherwise the iterations of a step would ask for the same tension again and again. Points are cut
+//! off until none pulls; one comes back where its law presses after all, `R(g₊, ġ₊) < 0` without its force.
+
+use carom_laws::Status;
+
+use super::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
+use crate::Compliance;
+use crate::interface::Candidate;
+
+/// What was found of the points of a problem.
+#[derive(Clone)]
+struct Found {
+    forces: Vec<f64>,
+    tangential: Vec<[f64; 2]>,
+    statuses: Vec<Status>,
+    slips: Vec<Slip>,
+}
+
+impl Coulomb {
+    /// Cuts tension off in the solution just found, where D is known entry by entry. Where no set of points is found in which none pulls
+    /// and none presses, tension is cut off in this solution as it is.
+    pub(super) fn cut_off(&mut self, problem: &Posed) {
+        let Compliance::Dense(d) = problem.d else {
+            return;
+        };
+        let pulls = |coulomb: &Coulomb, place: usize, i: usize| {
+            let row = place * (1 + problem.tangents);
+            coulomb.trial.p[row] < 0.0 && problem.candidates[i].law.get().clips()
+        };
+        let mut kept: Vec<usize> = (0..problem.len()).collect();
+        if !kept.iter().any(|&i| pulls(self, i, i)) {
+            return;
+        }
+        let whole = self.found();
+        let (passes, sweeps) = (self.passes, self.sweeps);
+        let mut settled = None;
+        for _ in 0..2 * problem.len() {
+            let places = kept.iter().enumerate();
+            let pulling = places.filter(|(place, i)| pulls(self, *place, **i));
+            let pulling: Vec<usize> = pulling.map(|(_, i)| *i).collect();
+            match pulling.is_empty() {
+                false => kept.retain(|i| !pulling.contains(i)),
+                true => {
+                    let found = self.spread(&kept, &whole);
+                    let Some(back) = pressing((problem, d), &kept, &found) else {
+                        settled = Some(found);
+                        break;
+                    };
+                    kept.insert(kept.partition_point(|i| *i < back), back);
+                }
+            }
+            if self.solve_kept((problem, d), &kept).is_err() {
+                break;
+            }
+        }
+        let found = settled.unwrap_or_else(|| without_tension(problem, whole));
+        (self.passes, self.sweeps) = (passes, sweeps);
+        self.give(problem, found);
+    }
+
+    /// Solves for some of the points alone.
+    fn solve_kept(
+        &mut self,
+        (problem, d): (&Posed, &[f64]),
+        kept: &[usize],
+    ) -> Result<(), FrictionFailure> {
+        let width = 1 + problem.tangents;
+        let rows = || {
+            let of = |&i: &usize| i * width..(i + 1) * width;
+            kept.iter().flat_map(of)
+        };
+        let n = problem.rows();
+        let block: Vec<f64> = rows()
+            .flat_map(|row| rows().map(move |column| d[row * n + column]))
+            .collect();
+        let candidates: Vec<Candidate> = kept.iter().map(|&i| problem.candidates[i]).collect();
+        let friction: Vec<Tangential> = kept.iter().map(|&i| problem.friction[i]).collect();
+        let own = Posed {
+            candidates: &candidates,
+            friction: &friction,
+            d: Compliance::Dense(&block),
+            ..*problem
+        };
+        if kept.is_empty() {
+            self.trial.start(&own);
+            self.finish(&own);
+            return Ok(());
+        }
+        self.settle_with_tension(&own)
+    }
+
+    fn found(&self) -> Found {
+        Found {
+            forces: self.forces.clone(),
+            tangential: self.tangential.clone(),
+            statuses: self.statuses.clone(),
+            slips: self.slips.clone(),
+        }
+    }
+
+    /// What was found of the points kept; the others have the status that they had with tension, and no force.
+    fn spread(&self, kept: &[usize], whole: &Found) -> Found {
+        let n = whole.forces.len();
+        let mut found = Found {
+            forces: vec![0.0; n],
+            tangential: vec![[0.0; 2]; n],
+            statuses: whole.statuses.clone(),
+            slips: vec![Slip::Open; n],
+        };
+        for (place, &i) in kept.iter().enumerate() {
+            found.forces[i] = self.forces[place];
+            found.tangential[i] = self.tangential[place];
+            found.statuses[i] = self.statuses[place];
+            found.slips[i] = self.slips[place];
+        }
+        found
+    }
+
+    /// Makes this the solution of the problem.
+    fn give(&mut self, problem: &Posed, found: Found) {
+        self.trial.start(problem);
+        let width = 1 + problem.tangents;
+        for (i, (force, t)) in found.forces.iter().zip(&found.tangential).enumerate() {
+            self.trial.p[i * width] = *force;
+            self.trial.p[i * width + 1..(i + 1) * width].copy_from_slice(&t[..problem.tangents]);
+        }
+        self.trial.statuses.clone_from(&found.statuses);
+        self.trial.multiply(problem);
+        (self.forces, self.tangential) = (found.forces, found.tangential);
+        (self.statuses, self.slips) = (found.statuses, found.slips);
+    }
+}
+
+/// A point without force whose law presses.
+fn pressing((problem, d): (&Posed, &[f64]), kept: &[usize], found: &Found) -> Option<usize> {
+    let (n, width) = (problem.rows(), 1 + problem.tangents);
+    let product = |i: usize| -> f64 {
+        let row = &d[i * width * n..(i * width + 1) * n];
+        let of_point = |(j, force): (usize, &f64)| {
+            let t = &found.tangential[j][..problem.tangents];
+            let along = t.iter().zip(&row[j * width + 1..]);
+            row[j * width] * force + along.map(|(t, d)| t * d).sum::<f64>()
+        };
+        found.forces.iter().enumerate().map(of_point).sum()
+    };
+    let presses = |&i: &usize| {
+        let relation = problem.relation(i, found.statuses[i]);
+        let product = product(i);
+        let end = problem.end(i, 0.0, product, product);
+        relation.gap * end.gap + relation.rate * end.rate + relation.offset < 0.0
+    };
+    (0..problem.len())
+        .filter(|i| kept.binary_search(i).is_err())
+        .find(presses)
+}
+
+/// A solution with tension set to zero in it.
+fn without_tension(problem: &Posed, mut found: Found) -> Found {
+    for (force, candidate) in found.forces.iter_mut().zip(problem.candidates) {
+        if candidate.law.get().clips() {
+            *force = force.max(0.0);
+        }
+    }
+    found
+}
