@@ -7,57 +7,6 @@ use super::owners::Attempt;
 use crate::error::Error;
 use crate::report::Notices;
 use crate::scheme::Durations;
-use crate::system::System;
-
-/// The stage of a step that an attempt computes.
-pub(super) struct SchemeStage {
-    /// Its number, from 0.
-    pub(super) number: usize,
-    /// The step that it belongs to, s.
-    pub(super) of: f64,
-    /// Lengths of all stages as parts of the step.
-    lengths: Vec<f64>,
-}
-
-impl SchemeStage {
-    /// That of the first attempt of a system.
-    pub(super) fn first(system: &System) -> SchemeStage {
-        SchemeStage {
-            number: 0,
-            of: 0.0,
-            lengths: system.scheme.get().stages(),
-        }
-    }
-
-    /// Whether the scheme has several.
-    pub(super) fn is_one_of_several(&self) -> bool {
-        self.lengths.len() > 1
-    }
-
-    /// Length of the first stage of a step of `dt`, s.
-    pub(super) fn first_length(&self, dt: f64) -> f64 {
-        match self.is_one_of_several() {
-            true => self.lengths[0] * dt,
-            false => dt,
-        }
-    }
-
-    /// Time from the start of the step to that of the stage, s.
-    pub(super) fn begun(&self) -> f64 {
-        match self.is_one_of_several() {
-            true => self.lengths[..self.number].iter().sum::<f64>() * self.of,
-            false => 0.0,
-        }
-    }
-
-    /// What the maps depend on.
-    pub(super) fn key(&self) -> (usize, f64) {
-        match self.is_one_of_several() {
-            true => (self.number, self.of),
-            false => (0, 0.0),
-        }
-    }
-}
 
 impl Driver {
     /// Computes the end of a step of `dt` from the state, of an explicit scheme before one of the size `next` (both s), in all stages of the
@@ -83,7 +32,7 @@ impl Driver {
         let mut notices = Notices::default();
         for number in 0..stages {
             self.attempt.stage.number = number;
-            let length = self.attempt.stage.lengths[number] * self.attempt.stage.of;
+            let length = self.attempt.stage.length();
             self.attempt_stage(length, length)?;
             notices.join(&self.attempt.notices);
             if number + 1 == stages {
@@ -129,7 +78,7 @@ impl Attempt {
     pub(super) fn stages(&self) -> usize {
         match self.is_static() {
             true => 1,
-            false => self.stage.lengths.len(),
+            false => self.stage.count(),
         }
     }
 

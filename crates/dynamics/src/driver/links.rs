@@ -252,7 +252,9 @@ impl Links {
             let term = |&(dof, c): &(u32, f64)| {
                 let i = dof as usize;
                 let row = maps.link_row(maps.of(i));
+                let memory = motion.memory.get(i).unwrap_or(&0.0);
                 let known = row.u * motion.u[i] + row.v * motion.v[i] + row.a * motion.a[i];
+                let known = known + row.m * memory;
                 c * (known + row.x * (vectors.x[i] + vectors.jump[i]))
             };
             row.iter().map(term).sum()

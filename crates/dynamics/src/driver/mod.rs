@@ -80,6 +80,7 @@ mod residual;
 mod restoring;
 mod rigid;
 mod rounding;
+mod scheme_stage;
 mod scratch;
 mod shared_looks;
 mod solve;
