@@ -319,7 +319,7 @@ mod tests {
     #[test]
     fn a_damped_oscillator_converges_with_order_two() {
         // a quarter of critical damping to t = 2
-        let (c, k) = (0.5, 1.0);
+        let (c, k) = (0.5_f64, 1.0_f64);
         let ring = (k - 0.25 * c * c).sqrt();
         let exact = |t: f64| {
             let (sin, cos) = (ring * t).sin_cos();

@@ -120,8 +120,9 @@ fn a_bar_has_the_same_force_at_its_node_and_at_its_gauss_point_under_every_schem
         let node = driver(bar(scheme, law), Integration::Node);
         let gauss = driver(bar(scheme, law), weak(&law));
         let difference = difference(node, gauss, 40);
-        // one point and one node: G is zero but for rounding
-        assert!(difference < 1e-12, "{scheme:?} {law:?}: {difference:e}");
+        // one point and one node: G is zero but for rounding, which a second stage solves with once more, from forces that it has enlarged
+        let bound = 1e-12 * 10.0_f64.powi(scheme.get().stages().len() as i32 - 1);
+        assert!(difference < bound, "{scheme:?} {law:?}: {difference:e}");
     }
 }
 
