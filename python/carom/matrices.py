@@ -59,8 +59,8 @@ class Matrices:
         tangents: with friction the derivatives of the sliding by the unknowns: one row for each row of N in the plane, two in space, those of a
             point one after another. The friction is at most `friction` times the normal force, and opposes the sliding.
 
-    Held unknowns are left out of the matrices. All schemes can be used, with the laws that they take in a case; the mass need not be
-    lumped. Schemes with stages beside the step (contact-stabilised, Laursen-Love) and those whose contact forces act through the mass (Kane,
+    Held unknowns are left out of the matrices. All schemes of one stage can be used, with the laws that they take in a case; Bathe's scheme, whose
+    steps have two, is refused. The mass need not be lumped. Schemes with stages beside the step (contact-stabilised, Laursen-Love) and those whose contact forces act through the mass (Kane,
     nonsmooth-alpha), like laws with projection, factorise M as well. Energy-momentum is the scheme of Laursen and Chawla here: on a linear
     model they are the same.
 

@@ -38,7 +38,8 @@ pub(crate) fn read_friction(json: &str) -> PyResult<Friction> {
     }
 }
 
-/// Name, order, and the rows of the map of a step of `dt` (s), each with the factors of u, v, a, memory, x and c.
+/// Name, order, lengths of the stages, and the rows of the map of a step of `dt` (s), or of its last stage, each with the factors of u, v, a,
+/// memory, x and c.
 #[pyfunction]
 pub(crate) fn scheme<'py>(py: Python<'py>, json: &str, dt: f64) -> PyResult<Bound<'py, PyDict>> {
     let scheme = read_scheme(json)?;
@@ -54,6 +55,7 @@ pub(crate) fn scheme<'py>(py: Python<'py>, json: &str, dt: f64) -> PyResult<Boun
     dict.set_item("rate", scheme.takes(Level::Rate))?;
     dict.set_item("contact", map.contact)?;
     dict.set_item("instant", map.instant(dt))?;
+    dict.set_item("stages", scheme.stages())?;
     let rows = PyDict::new(py);
     rows.set_item("inertia", row(&map.inertia))?;
     rows.set_item("force", row(&map.force))?;

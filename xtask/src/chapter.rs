@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Time schemes of the table, as `carom compare --with` takes them.
-const SCHEMES: [&str; 17] = [
+const SCHEMES: [&str; 18] = [
     "theta",
     "theta={theta=0.6}",
     "theta={theta=1.0}",
@@ -23,6 +23,7 @@ const SCHEMES: [&str; 17] = [
     "laursen-love",
     "kane",
     "contact-stabilised",
+    "bathe",
 ];
 
 /// Contact laws of the table.

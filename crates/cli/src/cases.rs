@@ -43,6 +43,7 @@ cases! {
     "mass-on-stop":,
     "hertz-points":,
     "stick-slip":,
+    "stiff-soft":,
     "sliding-block": "blocks.msh",
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,

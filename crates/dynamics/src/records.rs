@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::chatter::{Closing, TREMBLE, Waiting, chatter};
 use crate::impact::{Given, Impact, NoRestitution, OpenImpact, TIE};
 use crate::report::ContactReport;
+use crate::scheme::Durations;
 use crate::small::{Largest, Smallness};
 use crate::step_map::Impulse;
 use crate::sum::Sum;
@@ -210,6 +211,8 @@ pub struct Step<'a> {
     pub span: [f64; 2],
     /// Its length, s: the difference of the two but for rounding; 0 of a static step, in which forces give no impulse.
     pub dt: f64,
+    /// How long its forces give their impulse.
+    pub durations: Durations,
     /// How forces make impulses in the scheme.
     pub impulse: Impulse,
     /// Normal forces of all points at the start and of the step, N.
@@ -306,14 +309,18 @@ impl Records {
         );
         record.impulse.add(mean(before.0, force));
         record.impulse.add(projected.0);
-        let later = dt * impulse.later();
-        record.forces.add(dt * report.force);
-        record.resizing.add((later - record.later) * before.0);
+        let Durations {
+            force: lasts,
+            later,
+            before: expected,
+        } = step.durations;
+        record.forces.add(lasts * report.force);
+        record.resizing.add((expected - record.later) * before.0);
         record.jumps.add(projected.0 + later * change.0);
         for i in 0..3 {
             let sum = &mut record.exchanged[i];
-            sum.add(dt * report.resultant[i]);
-            sum.add((later - record.later) * before.1[i]);
+            sum.add(lasts * report.resultant[i]);
+            sum.add((expected - record.later) * before.1[i]);
             sum.add(projected.1[i] + later * change.1[i]);
         }
         record.later = later;
@@ -360,7 +367,7 @@ impl Records {
             force: report.force,
             impulse: [0, 1, 2].map(|i| mean(before.1[i], resultant[i]) + projected.1[i]),
             impulsive: [0, 1, 2].map(|i| projected.1[i] + carried.1[i]),
-            normal: [0, 1, 2].map(|i| dt * report.normal[i] + projected.1[i]),
+            normal: [0, 1, 2].map(|i| lasts * report.normal[i] + projected.1[i]),
             work: step.work,
             crushed: step.crushed,
             rubbed: report.friction_loss,

@@ -46,7 +46,8 @@ pub struct ContactReport {
 pub struct ContactSample {
     /// Time at its end, s.
     pub time: f64,
-    /// Its length, s.
+    /// Its length, s; of a stage of a step how long its forces give their impulse ([`Durations`](crate::scheme::Durations)). The sum is the
+    /// length of the step.
     pub dt: f64,
     /// By contact.
     pub contacts: Vec<ContactReport>,
@@ -127,7 +128,7 @@ pub struct StepReport {
     /// Passes of the status loop; in zones the passes over the step until the links hold.
     pub passes: usize,
     /// What the contacts did in the parts of the step, where it has some: the inner steps of zones, the halves of a nonlinear
-    /// step that found no equilibrium. A contact of a zone without inner steps does in each part what it does in the step.
+    /// step that found no equilibrium, the stages of a scheme of several. A contact of a zone without inner steps does in each part what it does in the step.
     pub samples: Vec<ContactSample>,
     /// What the step went on after; of zones with inner steps in the last of them.
     pub notices: Notices,

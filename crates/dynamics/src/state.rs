@@ -86,7 +86,7 @@ pub struct InterfaceState {
     /// Friction force along the two tangents, N; empty without friction.
     pub friction: Vec<[f64; 2]>,
     /// Contact force that stands at the beginning of the next step, N: that of the last step, or after a projection the
-    /// one in balance with the acceleration.
+    /// one in balance with the acceleration; after a stage as the momentum takes it ([`Impulse`](crate::Impulse)).
     pub carried: Vec<f64>,
     /// Gap at the end of the step, m, open positive; infinite where a point faces nothing.
     pub gap: Vec<f64>,

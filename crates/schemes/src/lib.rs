@@ -1,7 +1,7 @@
 //! Time schemes as pure numbers: how a step depends on its unknown, and its energy balance. No state, no model.
 //!
-//! A scheme says its [`StepMap`]: every vector of a step as a combination of those at the start and of one unknown. The
-//! driver of `carom-dynamics` knows no scheme besides.
+//! A scheme says its [`StepMap`]: every vector of a step as a combination of those at the start and of one unknown. A scheme of several
+//! stages says one for each ([`TimeScheme::stages`]). The driver of `carom-dynamics` knows no scheme besides.
 //!
 //! Adding a scheme: one file, and its lines here.
 
@@ -43,12 +43,17 @@ macro_rules! schemes {
             /// The mid-point rule with an algorithmic stress whose work is the change of the stored energy (Simo, Tarnow; Gonzalez): energy
             /// and momenta to round-off in large transformations, for hyperelastic materials; made for the velocity law.
             EnergyMomentum,
+            /// The composite scheme of Bathe: the trapezoidal rule over a part of the step, then the three-point backward formula over all of it.
+            /// Damps what the step does not resolve, and little else.
+            Bathe,
         }
     };
 }
 
+mod bathe;
 mod central_difference;
 mod contact_stabilised;
+mod durations;
 mod energy_momentum;
 mod generalised_alpha;
 mod hht;
@@ -65,8 +70,10 @@ pub mod step_map;
 mod tchamwa_wielgosz;
 mod theta;
 
+pub use bathe::Bathe;
 pub use central_difference::CentralDifference;
 pub use contact_stabilised::ContactStabilised;
+pub use durations::Durations;
 pub use energy_momentum::EnergyMomentum;
 pub use generalised_alpha::GeneralisedAlpha;
 pub use hht::Hht;

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::TimeScheme;
+use crate::{StepMap, TimeScheme};
 
 macro_rules! declare {
     ($($(#[$doc:meta])* $scheme:ident,)*) => {
@@ -20,6 +20,14 @@ macro_rules! declare {
                 match self {
                     $(Scheme::$scheme(scheme) => scheme,)*
                 }
+            }
+
+            /// Length (s) and map of each stage of a step of `dt` (s).
+            pub fn stage_maps(&self, dt: f64) -> Vec<(f64, StepMap)> {
+                let scheme = self.get();
+                let lengths = scheme.stages().into_iter().enumerate();
+                let stage = |(k, length)| (length * dt, scheme.stage_map(k, dt));
+                lengths.map(stage).collect()
             }
 
             /// All but those with forces between two states, with usual parameters: what the batteries run over.

@@ -45,13 +45,22 @@ pub trait TimeScheme {
     fn name(&self) -> &'static str;
     /// How the step of length `dt` (s) depends on its unknown.
     fn step_map(&self, dt: f64) -> StepMap;
+    /// Lengths of the stages of a step as parts of it, of sum 1: one in most schemes. Each stage has an unknown, a balance and contact forces of
+    /// its own, and starts from the end of the stage before; what later stages need of the start of the step is in the memory.
+    fn stages(&self) -> Vec<f64> {
+        vec![1.0]
+    }
+    /// How a stage of a step of the length `dt` (s) depends on its unknown; [`TimeScheme::step_map`] is that of the last one.
+    fn stage_map(&self, _stage: usize, dt: f64) -> StepMap {
+        self.step_map(dt)
+    }
     /// The same before a step of the length `next` (s). The forces of an explicit scheme move the points in the next step alone, so
     /// that the rate which a law constrains is that of the next step.
     fn step_map_before(&self, dt: f64, _next: f64) -> StepMap {
         self.step_map(dt)
     }
-    /// Its energy balance for a step of length `dt` (s); `None` where none is known: the ledger then says so, and its
-    /// residual holds what the scheme dissipates.
+    /// Its energy balance for a step of length `dt` (s); `None` where none is known: the energy of all steps is then balanced by works, and
+    /// what the scheme dissipates is found as their difference.
     fn energy_identity(&self, dt: f64) -> Option<EnergyIdentity>;
     /// Whether the state holds an acceleration in balance, which needs one at the start.
     fn keeps_acceleration(&self) -> bool;

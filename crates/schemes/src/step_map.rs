@@ -167,10 +167,15 @@ impl Impulse {
         }
     }
 
+    /// Weight of R at the start in the change of the momentum, the forces of the step left out: `old - new carry`.
+    pub fn of_start(&self) -> f64 {
+        self.old - self.new * self.carry
+    }
+
     /// What R at the start of a step gives to the momentum, in it and, by its return in the R to come, in steps of the same length
     /// after it, over dt.
     pub fn later(&self) -> f64 {
-        (self.old - self.new * self.carry) / (1.0 + self.carry)
+        self.of_start() / (1.0 + self.carry)
     }
 }
 
@@ -195,8 +200,7 @@ pub struct StepMap {
     pub acceleration: Row,
     /// The newest displacement known before x: the configuration from which contact is looked ahead.
     pub placed: Row,
-    /// The displacement that a contact law in the gap constrains: that of the end of the step in most schemes. Without c;
-    /// here and in the rate without m.
+    /// The displacement that a contact law in the gap constrains: that of the end of the step in most schemes. Without c.
     pub gap: Row,
     /// The velocity that a contact law in the rate constrains.
     pub rate: Row,
@@ -346,9 +350,10 @@ mod tests {
     fn forces_are_taken_where_a_steady_motion_is_at_their_instant() {
         let dt = 0.3;
         for scheme in Scheme::registered() {
-            let map = scheme.get().step_map(dt);
-            let difference = map.instant(dt) - map.steady_force();
-            assert!(difference.abs() < 1e-15, "{scheme:?}: {difference}");
+            for (length, map) in scheme.stage_maps(dt) {
+                let difference = map.instant(length) - map.steady_force();
+                assert!(difference.abs() < 1e-15, "{scheme:?}: {difference}");
+            }
         }
         let instant = |scheme: Scheme| scheme.get().step_map(dt).instant(dt);
         assert!((instant(Scheme::Krenk(crate::Krenk { rho_inf: 0.8 })) - 0.5 * dt).abs() < 1e-15);

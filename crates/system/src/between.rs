@@ -124,7 +124,11 @@ impl System {
 fn alone(scheme: &Scheme, map: &StepMap) -> Option<&'static str> {
     let plain = |impulse: &Impulse| impulse.gain == 1.0 && impulse.carry == 0.0;
     let scheme = scheme.get();
-    if scheme.projects_predictor() || scheme.restores_contact_work() {
+    if scheme.stages().len() > 1 {
+        Some(
+            "its step has stages, each with a balance of its own, at whose ends other schemes have none",
+        )
+    } else if scheme.projects_predictor() || scheme.restores_contact_work() {
         Some("it has a stage of its own with the mass of all bodies")
     } else if scheme.is_between() {
         Some("its forces belong to the way of the step, those of others to an instant")

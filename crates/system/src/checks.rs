@@ -122,7 +122,7 @@ impl System {
         }
         let projects = |contact: &&ContactPair| contact.law.projects();
         if let Some(contact) = contacts.find(projects)
-            && !scheme.step_map(self.dt).balances_at_the_end()
+            && (scheme.stages().len() > 1 || !scheme.step_map(self.dt).balances_at_the_end())
         {
             return Err(Error::Projection {
                 contact: contact.name.clone(),

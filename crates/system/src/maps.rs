@@ -30,13 +30,13 @@ pub struct Maps {
 }
 
 impl Maps {
-    /// The maps of steps of `dt` before steps of the size `next` (both s).
+    /// The maps of steps of `dt` before steps of the size `next` (both s); of the first stage of a scheme of several.
     pub fn new(system: &System, dt: f64, next: f64) -> Maps {
         let mut maps = Maps {
             maps: system
                 .schemes
                 .iter()
-                .map(|s| s.get().step_map(dt))
+                .map(|s| s.get().stage_map(0, dt))
                 .collect(),
             factors: vec![0.0; system.schemes.len()],
             weights: vec![[0.0, 1.0]; system.schemes.len()],
@@ -44,8 +44,22 @@ impl Maps {
             turning: !system.links.turning.is_empty(),
             spans: system.spans.clone(),
         };
-        maps.resize(&system.schemes, (dt, next));
+        match maps.maps.len() == 1 && system.has_stages() {
+            true => maps.stage(&system.scheme, 0, dt),
+            false => maps.resize(&system.schemes, (dt, next)),
+        }
         maps
+    }
+
+    /// Makes these the maps of a stage of a step of `dt` (s) of the only scheme.
+    pub fn stage(&mut self, scheme: &Scheme, number: usize, dt: f64) {
+        let scheme = scheme.get();
+        let identity = scheme.energy_identity(dt);
+        let identity = identity.filter(|_| scheme.keeps_acceleration());
+        self.factors
+            .fill(identity.map_or(0.0, |identity| identity.inertia));
+        self.weights.fill(scheme.link_weights());
+        self.maps.fill(scheme.stage_map(number, dt));
     }
 
     /// Makes these the maps of another size of the step.

@@ -438,6 +438,7 @@ impl Model {
             || self.bodies.iter().any(damped)
             || self.discrete.iter().any(|some| !some.spec.is_linear())
             || self.scheme.get().is_between()
+            || self.scheme.get().energy_identity(self.dt).is_none()
             || self.mixes_schemes()
             || self.contacts.iter().any(needs_newton)
     }

@@ -294,6 +294,17 @@ impl System {
         self.nonlinear.needed
     }
 
+    /// Whether the residual of the balance of energy tells what is not balanced: by the identity of the scheme, or where all works are known.
+    pub fn closes_energy(&self) -> bool {
+        self.is_nonlinear() || self.scheme.get().energy_identity(self.dt).is_some()
+    }
+
+    /// Whether a step of any scheme has several stages.
+    pub fn has_stages(&self) -> bool {
+        let staged = |scheme: &Scheme| scheme.get().stages().len() > 1;
+        self.schemes.iter().any(staged)
+    }
+
     /// Whether any force is one of damping: of dashpots, of Rayleigh's damping or of that of modes.
     pub fn has_damping(&self) -> bool {
         let none = crate::nonlinear::Damping::default();

@@ -134,9 +134,10 @@ fn flights() -> Result<Vec<Row>, Error> {
 }
 
 /// Whether the force that makes the gap vanish stops the end of the bar: not where the velocity jumps besides, where the
-/// compliances of the mass and of the step are summed, or where the predictor is projected.
+/// compliances of the mass and of the step are summed, where the predictor is projected, or where the force acts on in the next stage.
 fn stops(scheme: Scheme, law: Law) -> bool {
     let other = match scheme {
+        _ if scheme.get().stages().len() > 1 => true,
         Scheme::LaursenLove(_) | Scheme::Kane(_) | Scheme::ContactStabilised(_) => true,
         Scheme::PaoliSchatzman(scheme) => scheme.restitution > 0.0,
         _ => false,

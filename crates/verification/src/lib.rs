@@ -63,6 +63,7 @@ mod bars_schemes;
 mod bars_stages;
 mod bars_theta;
 mod base_motion;
+mod bathe;
 mod beam_contact;
 mod beam_deflections;
 mod beam_frequencies;
@@ -210,6 +211,7 @@ macro_rules! cases {
             bars_stages
             bars_theta
             base_motion
+            bathe
             beam_contact
             beam_deflections
             beam_frequencies

@@ -91,12 +91,20 @@ impl Zoned {
         }
     }
 
-    /// Refuses schemes whose velocities the multipliers of links between zones that step apart cannot hold.
+    /// Refuses schemes of several stages, and those whose velocities the multipliers of links between zones that step apart cannot hold.
     fn check_schemes(&self) -> Result<(), Error> {
         let joined = self.zones_of_rows();
         let linked = |zone: usize| joined.iter().any(|zones| zones.contains(&zone));
         for (k, zone) in self.zones.iter().enumerate() {
             let scheme = zone.scheme.get();
+            if scheme.stages().len() > 1 {
+                return Err(Error::LinkScheme {
+                    zone: zone.name.clone(),
+                    scheme: scheme.name(),
+                    cause: "its step has stages, each with a balance of its own, and links and contacts between zones that step apart hold at \
+                            the ends of steps; take equal steps and one scheme for all zones",
+                });
+            }
             let answers = scheme.step_map(self.model.dt).velocity.x != 0.0;
             if linked(k) && !answers {
                 return Err(Error::LinkScheme {

@@ -122,6 +122,12 @@ fn map_of(scheme: &Scheme, dt: f64) -> StepMap {
 
 fn refuse(scheme: &Scheme, map: &StepMap, laws: &[Law]) -> PyResult<()> {
     let scheme = scheme.get();
+    if scheme.stages().len() > 1 {
+        return Err(wrong(format!(
+            "the scheme {} solves each step in stages, and the step of matrices has one",
+            scheme.name()
+        )));
+    }
     for law in laws {
         let level = law.get().level();
         let projected = law.projects() && !map.balances_at_the_end();

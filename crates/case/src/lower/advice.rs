@@ -14,7 +14,7 @@ struct Advice {
 }
 
 /// All of them. The numbers behind them are in the tables of the chapter: two bars, and a bar that bounces 200 times.
-const AGAINST: [Advice; 7] = [
+const AGAINST: [Advice; 9] = [
     Advice {
         is: |scheme, law| {
             matches!(scheme, Scheme::Newmark(s) if s.gamma == 0.5 && s.beta == 0.25)
@@ -56,6 +56,16 @@ const AGAINST: [Advice; 7] = [
         is: |scheme, law| matches!(scheme, Scheme::Hht(_)) && is_plain(law),
         of_masses: false,
         reason: "the scheme of Hilber, Hughes and Taylor with the displacement law chatters and gains energy over many impacts",
+    },
+    Advice {
+        is: |scheme, law| matches!(scheme, Scheme::Bathe(_)) && is_plain(law),
+        of_masses: true,
+        reason: "Bathe's scheme with the displacement law chatters and gains energy below a Courant number of about 2",
+    },
+    Advice {
+        is: |scheme, law| matches!(scheme, Scheme::Bathe(_)) && matches!(law, Law::Restitution(_)),
+        of_masses: false,
+        reason: "under Bathe's scheme a rigid body rebounds faster than its coefficient says: the force of an impact acts on in the next stage",
     },
 ];
 

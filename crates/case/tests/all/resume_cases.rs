@@ -23,6 +23,7 @@ pub const BARS: &[Small] = &[
     ("mass-on-stop/case.toml", &[]),
     ("oscillators-in-earthquake/case.toml", &[]),
     ("pounding/case.toml", &[]),
+    ("stiff-soft/case.toml", &[]),
     ("two-bars-newmark/case.toml", &[]),
     ("two-bars/case.toml", &[]),
 ];

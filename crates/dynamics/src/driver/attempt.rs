@@ -9,9 +9,9 @@ use crate::error::Error;
 use crate::report::Notices;
 
 impl Driver {
-    /// Computes the next state from the state, a step of `dt` further, of an explicit scheme before one of the size `next`
+    /// Computes the next state from the state, a step or a stage of it of `dt` further, of an explicit scheme before one of the size `next`
     /// (both s).
-    pub(super) fn attempt(&mut self, dt: f64, next: f64) -> Result<(), Error> {
+    pub(super) fn attempt_stage(&mut self, dt: f64, next: f64) -> Result<(), Error> {
         self.attempt.notices = Notices::default();
         let outcome = self.attempt_to_the_end(dt, next);
         self.attempt.unless_interrupted(outcome)
@@ -74,13 +74,9 @@ impl Driver {
         if !self.balances.find_jump(&self.attempt)? {
             return attempt(self);
         }
-        self.balances
-            .jump
-            .exchange(&mut self.attempt.state.motion.v);
+        self.balances.jump.exchange(&mut self.attempt.state.motion);
         let outcome = attempt(self);
-        self.balances
-            .jump
-            .exchange(&mut self.attempt.state.motion.v);
+        self.balances.jump.exchange(&mut self.attempt.state.motion);
         outcome
     }
 }

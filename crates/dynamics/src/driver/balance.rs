@@ -85,7 +85,7 @@ impl Attempt {
         }
     }
 
-    /// Weights of the forces at the start and of the step in their works, by zone.
+    /// Weights of the forces at the start ([`Impulse`](crate::step_map::Impulse)) and of the step in their works, by zone.
     pub(super) fn weights(&self) -> Vec<[f64; 2]> {
         let zones = 0..self.maps.all().len();
         zones.map(|zone| self.weights_of(zone)).collect()
@@ -96,17 +96,28 @@ impl Attempt {
         let impulse = &self.maps.all()[zone].impulse;
         match (self.is_plain(), self.maps.is_static()) {
             _ if self.state.forces.is_empty() => [0.0, 1.0],
-            (true, _) => [impulse.old, impulse.new],
+            (true, _) => [impulse.of_start(), impulse.new],
             // along a static step forces go from one equilibrium to the next
             (false, true) => [0.5, 0.5],
             (false, false) => [0.0, 1.0],
         }
     }
 
-    /// Whether the forces of a dynamic step change the momentum as they are.
+    /// Whether the forces of a dynamic step change the momentum as they are, or in stages by their sums.
     pub(super) fn is_plain(&self) -> bool {
+        let staged = self.stage.is_one_of_several();
         let mut impulses = self.maps.all().iter().map(|map| &map.impulse);
-        !self.maps.is_static() && impulses.all(|one| one.gain == 1.0 && one.carry == 0.0)
+        !self.maps.is_static()
+            && impulses.all(|one| one.gain == 1.0 && (one.carry == 0.0 || staged))
+    }
+
+    /// What forces of friction and of obstacles weigh at the start and in the step in their works. In stages they are not kept as the momentum
+    /// takes them: the force of the stage keeps its weight, and that at its start has what is left of 1.
+    pub(super) fn weights_as_told(&self, weights: [f64; 2]) -> [f64; 2] {
+        match self.stage.is_one_of_several() && !self.maps.is_static() {
+            true => [1.0 - weights[1], weights[1]],
+            false => weights,
+        }
     }
 
     /// |a|²_M at the start of the step, as far as the identity asks for it.
@@ -163,6 +174,12 @@ impl Contacts {
         let interface = &mut attempt.next.interface;
         for point in self.active.within(0..system.points()) {
             interface.carried[point] = interface.force[point];
+        }
+        if attempt.stage.is_one_of_several() && !attempt.maps.is_static() {
+            let carry = attempt.maps.first().contact_impulse.carry;
+            for point in self.active.within(0..system.points()) {
+                interface.carried[point] -= carry * attempt.state.interface.carried[point];
+            }
         }
         interface.count_flights(&attempt.state.interface.flight, attempt.dt);
         let has_rate = attempt

@@ -39,10 +39,10 @@ impl Driver {
     pub(super) fn balance_by_works(&mut self) {
         let weights = self.attempt.weights_of_forces();
         let identity = self.attempt.identity_of_ledger();
-        let friction = self
-            .contacts
-            .friction_work(&self.attempt, &weights.contacts);
-        let obstacles = self.obstacle_work(&weights.contacts, &|contact| {
+        let told = weights.contacts.iter();
+        let told: Vec<_> = told.map(|of| self.attempt.weights_as_told(*of)).collect();
+        let friction = self.contacts.friction_work(&self.attempt, &told);
+        let obstacles = self.obstacle_work(&told, &|contact| {
             self.contacts.pushed(&self.attempt, contact)
         });
         let own_before = self
@@ -227,9 +227,13 @@ impl Balances {
         );
     }
 
-    /// Keeps the forces of the step for the balance of the next one, if that has them at its start.
+    /// Keeps the forces of the step for the balance of the next one, if that has them at its start; in stages as the momentum takes them.
     fn keep_forces(&self, attempt: &mut Attempt, link: &[f64], weights: &Weights) {
         let go_on = weights.forces.iter().any(|of| of[0] != 0.0) || attempt.maps.is_static();
+        let carry = match attempt.is_plain() {
+            true => attempt.maps.first().impulse.carry,
+            false => 0.0,
+        };
         let works = &self.works;
         let own = [&works.contact[..], &works.reaction, &works.springs];
         let now = balanced(&attempt.vectors, link, own);
@@ -237,6 +241,14 @@ impl Balances {
         for (kept, force) in kept.zip(now.each()) {
             kept.clear();
             kept.extend_from_slice(if go_on { force } else { &[] });
+        }
+        if carry == 0.0 {
+            return;
+        }
+        let (kept, before) = (&mut attempt.next.forces, &attempt.state.forces);
+        for (kept, before) in kept.each_mut().into_iter().zip(before.each()) {
+            let both = kept.iter_mut().zip(before);
+            both.for_each(|(kept, before)| *kept -= carry * before);
         }
     }
 

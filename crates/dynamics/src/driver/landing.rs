@@ -9,29 +9,43 @@ impl Driver {
     /// When the first of the points in flight is at its lead of steps of size `planned`, after the start of the attempt just
     /// made, s; infinite where none is. `largest`: the largest step that the rules allow, s.
     pub fn first_cut(&self, (rules, largest): (&Adaptive, f64), planned: f64) -> f64 {
-        let maps = Maps::new(&self.attempt.system, planned, planned);
+        let system = &*self.attempt.system;
+        let maps = Maps::new(system, planned, planned);
+        let length = self.attempt.stage.first_length(planned);
+        let cut = |&(point, arrival): &(usize, f64)| {
+            let number = system.contact_of(point);
+            let law = system.contacts[number].law.get();
+            arrival - lead(&maps.all()[system.zone_of(number)], length, law)
+        };
+        let last = self.arrivals((rules, largest), self.attempt.stage.begun());
+        let cuts = self.early.iter().chain(&last).map(cut);
+        cuts.filter(|cut| *cut >= rules.smallest)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// When the points in flight close, after the start of the attempt at the step, s, of which the stage just computed began `begun` (s) later.
+    pub(super) fn arrivals(
+        &self,
+        (rules, largest): (&Adaptive, f64),
+        begun: f64,
+    ) -> Vec<(usize, f64)> {
+        let system = &*self.attempt.system;
         let interface = &self.attempt.state.interface;
-        let mut first = f64::INFINITY;
-        for point in 0..self.attempt.system.points() {
+        let mut arrivals = Vec::new();
+        for point in 0..system.points() {
             let (gap, flight) = (interface.gap[point], interface.flight[point]);
-            let number = self.attempt.system.contact_of(point);
-            let tolerance = self.attempt.system.contacts[number].tolerance;
+            let tolerance = system.contacts[system.contact_of(point)].tolerance;
             if flies((gap, flight), tolerance, (rules, largest)) {
-                let law = self.attempt.system.contacts[number].law.get();
-                let zone = self.attempt.system.zone_of(number);
                 let way = [
                     gap,
                     self.contacts.rate_at_start(&self.attempt, point),
                     self.stages.free_gap(&self.contacts, &self.attempt, point),
                 ];
                 let arrival = arrival(way, self.attempt.dt, tolerance);
-                let cut = arrival - lead(&maps.all()[zone], planned, law);
-                if cut >= rules.smallest {
-                    first = first.min(cut);
-                }
+                arrivals.push((point, begun + arrival));
             }
         }
-        first
+        arrivals
     }
 }
 

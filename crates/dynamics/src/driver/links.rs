@@ -42,6 +42,11 @@ impl Driver {
         next.works.clone_from(&old.works);
         let [before, after] = [&self.attempt.state.motion.u, &self.attempt.next.motion.u];
         let rates = [&self.attempt.state.motion.v, &self.attempt.next.motion.v];
+        // in stages those of the links are kept as the momentum takes them
+        let carry = match self.attempt.is_plain() {
+            true => self.attempt.maps.first().impulse.carry,
+            false => 0.0,
+        };
         for zone in 0..system.schemes.len() {
             let (weights, of_work) = (
                 self.attempt.maps.link_weights(zone),
@@ -73,7 +78,10 @@ impl Driver {
                                 .sum(),
                         };
                     }
-                    next.mixed[zone][row] = now;
+                    next.mixed[zone][row] = match carry == 0.0 {
+                        true => now,
+                        false => now - carry * mixed,
+                    };
                 }
             }
         }
@@ -244,7 +252,9 @@ impl Links {
             let term = |&(dof, c): &(u32, f64)| {
                 let i = dof as usize;
                 let row = maps.link_row(maps.of(i));
+                let memory = motion.memory.get(i).unwrap_or(&0.0);
                 let known = row.u * motion.u[i] + row.v * motion.v[i] + row.a * motion.a[i];
+                let known = known + row.m * memory;
                 c * (known + row.x * (vectors.x[i] + vectors.jump[i]))
             };
             row.iter().map(term).sum()

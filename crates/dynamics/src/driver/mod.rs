@@ -44,6 +44,7 @@ mod forces;
 mod held;
 mod identity;
 mod impulse;
+mod in_stages;
 mod joined;
 mod landing;
 mod leapfrog;
@@ -79,6 +80,7 @@ mod residual;
 mod restoring;
 mod rigid;
 mod rounding;
+mod scheme_stage;
 mod scratch;
 mod shared_looks;
 mod solve;
@@ -127,6 +129,10 @@ pub struct Driver {
     balances: Balances,
     /// That of the dynamics, as long as bodies wait for these in a static stage.
     released: Option<Arc<System>>,
+    /// The state at the start of the step whose later stages are under way.
+    origin: Option<Box<State>>,
+    /// Points that close in stages before the last one of the attempt, of adaptive steps, and when after its start, s.
+    early: Vec<(usize, f64)>,
     /// Every which step is dropped once, in tests.
     forced: Option<u64>,
     /// Size of the step after that of a zone, s.
@@ -262,7 +268,12 @@ impl Attempt {
             self.identity = None;
             return;
         }
-        self.maps.resize(&self.system.schemes, (dt, next));
+        match self.stage.is_one_of_several() {
+            true => self
+                .maps
+                .stage(&self.system.scheme, self.stage.number, self.stage.of),
+            false => self.maps.resize(&self.system.schemes, (dt, next)),
+        }
         // zones of different schemes are balanced by works
         self.identity = match &self.system.schemes[..] {
             [scheme] => scheme.get().energy_identity(dt),
@@ -301,7 +312,7 @@ impl Contacts {
     /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
     pub(super) fn size(&mut self, attempt: &mut Attempt, dt: f64, next: f64) {
         attempt.dt = dt;
-        let sized = Some((dt, next, attempt.is_static()));
+        let sized = Some(((dt, next), attempt.is_static(), attempt.stage.key()));
         if attempt.sized == sized {
             return;
         }

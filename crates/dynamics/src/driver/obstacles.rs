@@ -98,7 +98,7 @@ impl Balances {
         works.clear();
         for (contact, of) in contacts.sums.iter().enumerate() {
             let impulse = &attempt.maps.all()[attempt.system.zone_of(contact)].contact_impulse;
-            let weights = [impulse.old, impulse.new];
+            let weights = attempt.weights_as_told([impulse.old, impulse.new]);
             let work = attempt.work_of_obstacle(contact, weights, of.pushed);
             works.push(work.map_or(0.0, |work| attempt.contact_factor() * work));
         }

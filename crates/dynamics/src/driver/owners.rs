@@ -24,6 +24,7 @@ use super::paired::{PairingMode, sums_compliances};
 use super::passage::Passage;
 use super::rebound::Rebound;
 use super::refined::Refined;
+use super::scheme_stage::SchemeStage;
 use super::scratch::{Pace, Predictor, Projected, Restoring, Squares, Vectors, Works};
 use super::supports::Jump;
 use super::weak::{WeakForms, WithWeak};
@@ -261,14 +262,19 @@ pub(super) struct Balances {
     pub(super) works: Works,
 }
 
+/// What the maps of an attempt are of: its size and that of the next one, s; whether it is static; the stage, and the step that this belongs to, s.
+pub(super) type Sized = ((f64, f64), bool, (usize, f64));
+
 /// The attempt of a step under way: where it begins, how large it is, where it ends.
 pub(super) struct Attempt {
     pub(super) system: Arc<System>,
     /// Size of the attempt under way, s, and the maps of the zones.
     pub(super) dt: f64,
     pub(super) maps: Maps,
-    /// Size and stage of these maps; none before they are made.
-    pub(super) sized: Option<(f64, f64, bool)>,
+    /// The stage of the step that the attempt computes, of schemes of several.
+    pub(super) stage: SchemeStage,
+    /// What these maps are of; none before they are made.
+    pub(super) sized: Option<Sized>,
     /// The energy identity of the scheme; none of a static step, or where none is known.
     pub(super) identity: Option<EnergyIdentity>,
     /// Ends the attempt under way where it is set.
@@ -292,6 +298,7 @@ impl Attempt {
         Attempt {
             dt: 0.0,
             maps,
+            stage: SchemeStage::first(&system),
             sized: None,
             identity: None,
             interrupt: Interrupt::default(),

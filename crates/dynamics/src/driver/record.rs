@@ -69,16 +69,21 @@ impl Driver {
         let mut report = contact_report(points(), rows, [old, new], self.attempt.dt);
         self.contacts.report_friction(&self.attempt, k, &mut report);
         report.moment = self.moment_of(k, nodal);
-        report.friction_loss =
-            -self
-                .contacts
-                .friction_work_of(&self.attempt, k, [impulse.old, impulse.new]);
-        let carried_on = |point: usize| {
-            let changed = old.carried[point] - old.force[point];
-            projected.impulse(point) + dt * impulse.old * changed
+        report.friction_loss = -self.contacts.friction_work_of(
+            &self.attempt,
+            k,
+            self.attempt.weights_as_told([impulse.old, impulse.new]),
+        );
+        // between stages forces are carried on as sums, and no projection changes them
+        let staged = self.attempt.stage.is_one_of_several() && !self.attempt.maps.is_static();
+        let change = |of: &InterfaceState, point: usize| match staged {
+            true => 0.0,
+            false => of.carried[point] - of.force[point],
         };
+        let carried_on =
+            |point: usize| projected.impulse(point) + dt * impulse.old * change(old, point);
         report.impulsive = points().map(carried_on).sum();
-        let changed = |point: usize| new.carried[point] - new.force[point];
+        let changed = |point: usize| change(new, point);
         let contact = &system.contacts[k];
         let crush = |point: usize| {
             let share = contact.points[point - system.contacts[k].range.start].share;
@@ -122,6 +127,7 @@ impl Driver {
         let span = [self.attempt.state.time, self.attempt.next.time];
         for (k, of) in self.contacts.sums.iter().enumerate() {
             let impulse = self.attempt.contact_impulse(k);
+            let durations = self.attempt.durations(k);
             let State {
                 motion,
                 records,
@@ -131,6 +137,7 @@ impl Driver {
             let step = Step {
                 span,
                 dt,
+                durations,
                 impulse,
                 forces: [&self.attempt.state.interface.force, &interface.force],
                 report: &of.report,
@@ -276,7 +283,10 @@ impl Attempt {
             true => {
                 let impulse = self.contact_impulse(contact);
                 super::identity::WorkWeights {
-                    old: impulse.old,
+                    old: match self.stage.is_one_of_several() {
+                        true => impulse.of_start(),
+                        false => impulse.old,
+                    },
                     new: impulse.new,
                     lag: 0.0,
                 }

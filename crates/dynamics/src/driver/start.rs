@@ -56,6 +56,8 @@ impl Driver {
             },
             ranks: RankWork::default(),
             balances: Balances::default(),
+            origin: None,
+            early: Vec::new(),
             forced: None,
             ahead: system.dt,
             unplanned: None,
@@ -338,12 +340,11 @@ impl Driver {
     fn forces_at_the_start(&mut self, springs: Vec<f64>) {
         self.attempt.state.forces = StepForces::default();
         let system = &*self.attempt.system;
-        let of_end = self
-            .attempt
-            .maps
-            .all()
-            .iter()
-            .all(|map| map.impulse.old == 0.0);
+        let mut maps = self.attempt.maps.all().iter();
+        let of_end = match self.attempt.is_plain() {
+            true => maps.all(|map| map.impulse.of_start() == 0.0),
+            false => maps.all(|map| map.impulse.old == 0.0),
+        };
         if of_end && !self.attempt.is_static() {
             return;
         }

@@ -42,18 +42,19 @@ impl Driver {
         let control = self.attempt.control();
         let first = self.unplanned.take().unwrap_or(control.dt);
         let forced = self.is_forced();
+        let (step, time) = (self.attempt.state.step, self.attempt.state.time);
         let (mut control, attempts) = adapt(self, (control, first), (rules, system.dt), forced)?;
         self.report.attempts = attempts;
         self.report.notices.join(&self.attempt.notices);
-        let (step, time) = (self.attempt.state.step, self.attempt.state.time);
+        let size = self.attempt.stage.of;
         self.attempt.next.step = step + 1;
-        self.attempt.next.time = self
-            .attempt
-            .state
-            .control
-            .instant(step, time, self.attempt.dt);
-        control.take(Some(rules), (step, time, self.attempt.dt), system.dt);
-        self.accept(control, self.attempt.dt);
+        self.attempt.next.time = self.attempt.state.control.instant(step, time, size);
+        control.take(Some(rules), (step, time, size), system.dt);
+        if self.attempt.stages() > 1 {
+            self.add_last_part(self.attempt.next.time);
+            self.report.join_parts();
+        }
+        self.accept(control, size);
         Ok(())
     }
 
@@ -80,15 +81,19 @@ impl Driver {
             self.report.attempts += 1;
             let dt = size * (part as f64 / parts as f64);
             match self.attempt(dt, dt) {
-                Ok(()) if std::mem::take(&mut forced) => {}
+                Ok(()) if std::mem::take(&mut forced) => self.withdraw_stages(),
                 Ok(()) => {
                     self.report.notices.join(&self.attempt.notices);
                     done += part;
-                    if part < parts && !self.attempt.is_static() {
-                        self.report.add_part(to, self.attempt.dt);
+                    if (part < parts || self.attempt.stages() > 1) && !self.attempt.is_static() {
+                        self.add_last_part(to);
                     }
                     if done < parts {
-                        start.get_or_insert_with(|| self.attempt.state.clone());
+                        let before = self.origin.take();
+                        let state = &self.attempt.state;
+                        start.get_or_insert_with(|| {
+                            before.map_or_else(|| state.clone(), |state| *state)
+                        });
                         self.swap_states();
                         self.attempt.state.time = to;
                         // parts of a step are of the same stage
@@ -143,8 +148,18 @@ impl Driver {
         Ok(())
     }
 
+    /// Reports what the contacts did in the part of a step, or the last stage of it, that ends at `to` (s).
+    fn add_last_part(&mut self, to: f64) {
+        let dt = match self.attempt.stages() > 1 {
+            true => self.attempt.durations(0).force,
+            false => self.attempt.dt,
+        };
+        self.report.add_part(to, dt);
+    }
+
     /// Makes the attempt, a step of `size` (s), the state.
     pub(super) fn accept(&mut self, control: Control, size: f64) {
+        self.origin = None;
         self.attempt.next.control = control;
         self.attempt.next.control.compression = self.parts.stored.compression;
         self.parts.prepared = false;
@@ -245,8 +260,10 @@ impl Attempts for Driver {
         ledger.free_energy() > fraction * ledger.largest_energy
     }
 
-    /// An attempt leaves nothing behind.
-    fn withdraw(&mut self) {}
+    /// An attempt of one stage leaves nothing behind.
+    fn withdraw(&mut self) {
+        self.withdraw_stages();
+    }
 
     fn instant(&self) -> (u64, f64) {
         (self.attempt.state.step, self.attempt.state.time)

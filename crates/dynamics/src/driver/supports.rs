@@ -5,7 +5,8 @@
 //! of the step, and with a consistent mass the free ones f with them:
 //!
 //! `M_ff Δv_f = -M_fh Δv_h`, with the impulse `J = M Δv` of the supports (zero on f) and its work `J · (v + ½ Δv)`, which is
-//! the change of the kinetic energy.
+//! the change of the kinetic energy. Between the stages of a step the velocity at the start of the step, which the state remembers, jumps with it: the
+//! later stage then starts from a uniform motion too, and its forces alone change the momentum.
 
 use crate::columns::HeldColumns;
 use crate::error::Error;
@@ -25,6 +26,8 @@ pub(super) struct Jump {
     pub(super) work: f64,
     /// Velocity at the start: before the jump while an attempt is under way, after it otherwise.
     velocity: Vec<f64>,
+    /// The memory in the same way; empty where it does not jump.
+    memory: Vec<f64>,
     /// Factor of the mass, and its columns of held unknowns; none where it is diagonal, or before the first jump.
     mass: Option<(Operators, HeldColumns)>,
     change: Vec<f64>,
@@ -91,8 +94,13 @@ impl Jump {
         Ok(())
     }
 
-    /// Impulse and work of the supports, and the velocity after the jump.
+    /// Impulse and work of the supports, the velocity and the memory after the jump.
     fn add_up(&mut self, system: &System, motion: &Motion) {
+        if system.has_stages() {
+            let memory = motion.memory.iter().zip(&self.change);
+            self.memory
+                .extend(memory.map(|(memory, change)| memory + change));
+        }
         self.velocity.clone_from(&motion.v);
         for (i, p) in self.momentum.iter_mut().enumerate() {
             if !system.fixed[i] {
@@ -140,10 +148,14 @@ impl Jump {
     /// No jump.
     pub(super) fn clear(&mut self) {
         (self.impulse, self.work, self.jumps) = (Resultant::default(), 0.0, false);
+        self.memory.clear();
     }
 
-    /// Exchanges the velocity before the jump and that after it.
-    pub(super) fn exchange(&mut self, velocity: &mut Vec<f64>) {
-        std::mem::swap(velocity, &mut self.velocity);
+    /// Exchanges the velocity, and between stages the memory, before the jump and after it.
+    pub(super) fn exchange(&mut self, motion: &mut Motion) {
+        std::mem::swap(&mut motion.v, &mut self.velocity);
+        if !self.memory.is_empty() {
+            std::mem::swap(&mut motion.memory, &mut self.memory);
+        }
     }
 }

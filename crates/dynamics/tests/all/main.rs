@@ -36,6 +36,7 @@ mod sliding;
 mod small;
 mod solvers;
 mod stability;
+mod stages;
 mod stops;
 mod supports;
 mod thrown;

@@ -120,8 +120,9 @@ fn a_bar_has_the_same_force_at_its_node_and_at_its_gauss_point_under_every_schem
         let node = driver(bar(scheme, law), Integration::Node);
         let gauss = driver(bar(scheme, law), weak(&law));
         let difference = difference(node, gauss, 40);
-        // one point and one node: G is zero but for rounding
-        assert!(difference < 1e-12, "{scheme:?} {law:?}: {difference:e}");
+        // one point and one node: G is zero but for rounding, which a second stage solves with once more, from forces that it has enlarged
+        let bound = 1e-12 * 10.0_f64.powi(scheme.get().stages().len() as i32 - 1);
+        assert!(difference < bound, "{scheme:?} {law:?}: {difference:e}");
     }
 }
 
@@ -226,7 +227,9 @@ fn a_tilted_edge_has_mixed_supports_obeys_its_law_and_keeps_its_balances() {
                     "{scheme:?} {law:?}: point {k}, {force} {augmented}"
                 );
             }
-            let total = turned.report().contacts[0].force;
+            // of a step in stages the force of the last one
+            let parts = turned.report().parts();
+            let total = parts.last().unwrap().2[0].force;
             assert!((total - integral).abs() < 1e-12 * size);
         }
         let (state, ledger) = (turned.state(), &turned.state().ledger);

@@ -62,7 +62,8 @@ fn each(check: &dyn Fn(&str, Scheme, MassKind)) {
     let mut seen = 0;
     for scheme in schemes() {
         let map = scheme.get().step_map(0.05);
-        let taken = !map.has_memory()
+        let staged = scheme.get().stages().len() > 1;
+        let taken = (staged || !map.has_memory())
             && !map.uses_contact_acceleration()
             && !scheme.get().projects_predictor()
             && !scheme.get().restores_contact_work();

@@ -267,7 +267,7 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
 fn energy(system: &System, last: &Last, zones: Option<&Zones>) -> Energy {
     let identity = match zones {
         Some(zones) => zones.zones.iter().all(|zone| zone.has_identity),
-        None => system.scheme.get().energy_identity(system.dt).is_some(),
+        None => system.closes_energy(),
     };
     let ledger = &last.ledger;
     let (start, end) = (&ledger.initial, &ledger.balance);

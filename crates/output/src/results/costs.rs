@@ -94,7 +94,7 @@ impl Zones {
             Zone {
                 name: zone.name.clone(),
                 scheme: scheme.name().to_owned(),
-                has_identity: scheme.energy_identity(system.dt).is_some(),
+                has_identity: system.closes_energy(),
                 step: system.dt,
                 substeps: 1,
                 bodies: bodies().map(|body| body.name().to_owned()).collect(),
@@ -132,7 +132,7 @@ impl Zones {
             Zone {
                 name: names[k].clone(),
                 scheme: scheme.name().to_owned(),
-                has_identity: scheme.energy_identity(system.dt).is_some(),
+                has_identity: system.closes_energy(),
                 step: system.dt,
                 substeps: (run.system().dt / system.dt).round() as u32,
                 bodies: system

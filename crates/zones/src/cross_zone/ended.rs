@@ -8,6 +8,7 @@ use carom_dynamics::records::{Records, Step};
 use carom_dynamics::state::InterfaceState;
 use carom_dynamics::{Driver, Rubbing, contact_report, moment};
 use carom_nonsmooth::coulomb::Slip;
+use carom_schemes::Durations;
 use carom_schemes::step_map::Impulse;
 
 use super::CrossZoneContacts;
@@ -85,10 +86,12 @@ impl CrossZoneContacts {
                     |crush: f64| contact.points[place].share * contact.law.crush_energy(crush);
                 energy(self.state.interface.crush[point]) - energy(before.crush[point])
             };
+            let impulse = Impulse::weights(0.0, 1.0);
             let step = Step {
                 span: [end - dt, end],
                 dt,
-                impulse: Impulse::weights(0.0, 1.0),
+                durations: Durations::of_step(dt, &impulse),
+                impulse,
                 forces: [&before.force, &self.state.interface.force],
                 report: &report,
                 work: self.now[contact][0],

@@ -265,6 +265,8 @@ fn compare(scheme: Scheme, seed: u64, contact: bool) -> Option<[f64; 2]> {
 #[test]
 fn the_step_of_every_scheme_with_links_is_that_of_the_whole_system() {
     let mut schemes = Scheme::registered();
+    // the reference here takes a step at once
+    schemes.retain(|scheme| scheme.get().stages().len() == 1);
     schemes.push(Scheme::EnergyMomentum(EnergyMomentum {}));
     schemes.push(Scheme::Kane(carom_dynamics::scheme::Kane {
         beta: 0.49,

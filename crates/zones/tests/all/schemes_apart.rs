@@ -79,7 +79,8 @@ fn zones_of_unequal_steps_keep_the_order_of_their_scheme() {
     let mut schemes = Scheme::registered();
     schemes.push(Scheme::EnergyMomentum(EnergyMomentum {}));
     for scheme in schemes {
-        if let Scheme::TchamwaWielgosz(_) = scheme {
+        let staged = scheme.get().stages().len() > 1;
+        if staged || matches!(scheme, Scheme::TchamwaWielgosz(_)) {
             let error = Zones::new(&bars(scheme, 4, 40)).map(|_| ()).unwrap_err();
             assert!(error.to_string().contains("take equal steps"), "{error}");
             continue;

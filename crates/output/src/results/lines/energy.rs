@@ -76,7 +76,7 @@ pub(super) fn made(evidence: &Evidence) -> Finding {
     let (system, ledger) = (evidence.system, &evidence.last.ledger);
     let identity = system.scheme.get().energy_identity(system.dt);
     let lags = identity.is_some_and(|identity| identity.lag != 0.0);
-    if evidence.zones.is_some() || ledger.is_static || identity.is_none() {
+    if evidence.zones.is_some() || ledger.is_static || !system.closes_energy() {
         return Finding::Absent;
     }
     if lags && system.is_nonlinear() {
@@ -290,7 +290,7 @@ fn without_identity<'a>(evidence: &'a Evidence) -> Option<&'a str> {
                 .find(|zone| !zone.has_identity)
                 .map(|zone| zone.scheme.as_str())
         }
-        None if scheme.energy_identity(evidence.system.dt).is_some() => None,
+        None if evidence.system.closes_energy() => None,
         None => Some(scheme.name()),
     }
 }
