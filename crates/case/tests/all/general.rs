@@ -304,7 +304,8 @@ fn bodies_of_two_zones_meet_where_their_schemes_permit() {
 #[test]
 fn zones_whose_schemes_cannot_meet_are_told_by_the_contact() {
     let general = "general-contact.law.displacement = {}";
-    let text = zoned(general, ["newmark", "laursen-chawla"]);
+    // no force of an explicit step changes the gap at its end
+    let text = zoned(general, ["newmark", "central-difference"]);
     let input = Input::from_text("case.toml", &text, &[]);
     let (case, locator) = parse(&input).unwrap();
     let problems = build(&case, &locator, &input).err().unwrap();
