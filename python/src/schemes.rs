@@ -30,11 +30,16 @@ pub(crate) fn read_law(json: &str) -> PyResult<Law> {
 pub(crate) fn read_friction(json: &str) -> PyResult<Friction> {
     let friction: Friction = serde_json::from_str(json).map_err(|error| wrong(&error))?;
     let law = friction.get();
-    match law.slides(0.0).max(law.slides(f64::INFINITY)) > law.sticks() {
-        true => Err(PyValueError::new_err(
-            "friction: a point that slides has more of it than one that sticks",
+    let holds = |mu: f64| (0.0..=law.sticks()).contains(&mu);
+    match [0.0, f64::INFINITY]
+        .map(|rate| law.slides(rate))
+        .into_iter()
+        .all(holds)
+    {
+        true => Ok(friction),
+        false => Err(PyValueError::new_err(
+            "friction: accepted: a coefficient of sliding from 0 to that of sticking",
         )),
-        false => Ok(friction),
     }
 }
 

@@ -66,7 +66,7 @@ pub use curve::{Curve, CurveError, MOST_CURVE_POINTS};
 pub use damped::{Adhesion, Damped, GivenDamped};
 pub use defaults::{Defaults, Side};
 pub use displacement::Displacement;
-pub use friction::{Coulomb, Friction, FrictionLaw, StaticKinetic};
+pub use friction::*;
 pub use hertz::Hertz;
 pub use hunt_crossley::{GivenHuntCrossley, HuntCrossley};
 pub use law::{ContactLaw, End, Level, Local, Relation, Status};

@@ -118,6 +118,8 @@ mod tests {
         let mut schemes = Scheme::registered();
         schemes.push(Scheme::EnergyMomentum(EnergyMomentum {}));
         let (all, mut with_jump) = (schemes.len(), 0);
+        // zones that step apart do not take stages
+        schemes.retain(|scheme| scheme.get().stages().len() == 1);
         for scheme in schemes.into_iter().filter(|scheme| jumps(*scheme)) {
             with_jump += 1;
             let map = scheme.get().step_map(dt);

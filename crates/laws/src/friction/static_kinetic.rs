@@ -64,8 +64,9 @@ impl FrictionLaw for StaticKinetic {
     }
 
     fn slides(&self, rate: f64) -> f64 {
+        // exact at both ends, where it is compared with the coefficient of sticking
         let left = self.decay.map_or(0.0, |speed| (-rate / speed).exp());
-        self.kinetic + (self.at_rest - self.kinetic) * left
+        left * self.at_rest + (1.0 - left) * self.kinetic
     }
 }
 
@@ -90,5 +91,19 @@ mod tests {
             assert!((decays.slides(2.0 * speeds) - expected).abs() < 1e-15);
         }
         assert_eq!(decays.sticks(), 0.5);
+    }
+
+    #[test]
+    fn both_ends_are_the_coefficients_to_the_last_bit() {
+        // 0.03 + (0.3 - 0.03) is above 0.3
+        for (at_rest, kinetic) in [(0.3, 0.03), (0.7, 0.1), (1.0, 0.0)] {
+            let law = StaticKinetic {
+                at_rest,
+                kinetic,
+                decay: Some(0.1),
+            };
+            assert_eq!(law.slides(0.0), at_rest);
+            assert_eq!(law.slides(f64::INFINITY), kinetic);
+        }
     }
 }

@@ -30,10 +30,10 @@ impl Coulomb {
             let row = place * (1 + problem.tangents);
             coulomb.trial.p[row] < 0.0 && problem.candidates[i].law.get().clips()
         };
-        let mut kept: Vec<usize> = (0..problem.len()).collect();
-        if !kept.iter().any(|&i| pulls(self, i, i)) {
+        if !(0..problem.len()).any(|i| pulls(self, i, i)) {
             return;
         }
+        let mut kept: Vec<usize> = (0..problem.len()).collect();
         let whole = self.found();
         let (passes, sweeps) = (self.passes, self.sweeps);
         let mut settled = None;

@@ -62,6 +62,8 @@ fn bars(schemes: [Scheme; 2], m: [u32; 2], law: Law) -> Zoned {
 fn schemes() -> Vec<Scheme> {
     let mut all = Scheme::registered();
     all.push(Scheme::EnergyMomentum(EnergyMomentum {}));
+    // steps of several stages are refused
+    all.retain(|scheme| scheme.get().stages().len() == 1);
     all
 }
 
