@@ -257,12 +257,13 @@ def test_friction_is_larger_at_rest_than_in_motion():
         )
         model.run(100)
         assert model.velocity == pytest.approx([speed, 0.0], rel=1e-10, abs=1e-14)
-    rising = {"static-kinetic": {"static": 0.3, "kinetic": 0.5}}
-    with pytest.raises(ValueError, match="more of it than one that sticks"):
-        carom.Matrices(
-            np.eye(2), np.zeros((2, 2)), [[0.0, 1.0]], [0.0], law=Law("velocity", **NOW), scheme=Scheme("theta", theta=0.5), dt=1e-3,
-            friction=rising, tangents=[[1.0, 0.0]],
-        )
+    for static, kinetic in [(0.3, 0.5), (-0.1, -0.2)]:
+        wrong = {"static-kinetic": {"static": static, "kinetic": kinetic}}
+        with pytest.raises(ValueError, match="from 0 to that of sticking"):
+            carom.Matrices(
+                np.eye(2), np.zeros((2, 2)), [[0.0, 1.0]], [0.0], law=Law("velocity", **NOW), scheme=Scheme("theta", theta=0.5), dt=1e-3,
+                friction=wrong, tangents=[[1.0, 0.0]],
+            )
 
 
 def test_a_force_below_friction_moves_nothing():
