@@ -39,18 +39,17 @@ impl ContactPoint {
     /// What its law knows. `gap_free`: g_f, the gap without forces, m.
     #[must_use]
     pub fn local(&self, gap_free: f64) -> Local {
-        let rate = self.rebound * self.rate;
         Local {
             area: self.area,
             share: self.share,
             gap: self.gap,
-            rate,
+            rate: self.rebound * self.rate,
             start: self.in_way * self.rate,
             gap_free,
             dt: self.dt,
             tolerance: self.tolerance,
             crush: self.crush,
-            at: [self.gap, rate],
+            at: [self.gap, self.rate],
         }
     }
 

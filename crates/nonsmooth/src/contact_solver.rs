@@ -193,13 +193,7 @@ impl ContactSolver {
             }
             (Err(failure), _) => return Err(Unsolved::Friction(failure)),
         }
-        let of = |k: usize| PointForces {
-            normal: solver.forces[k],
-            tangential: solver.tangential[k],
-            status: solver.statuses[k],
-            slip: solver.slips[k],
-        };
-        self.found.extend((0..points.normal.len()).map(of));
+        self.found.extend(solver.found());
         Ok(())
     }
 }

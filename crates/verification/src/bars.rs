@@ -140,6 +140,17 @@ impl Run {
         }
     }
 
+    /// What it is against, its mass and its Courant number.
+    pub(crate) fn name(&self) -> String {
+        let Run {
+            against,
+            mass,
+            courant,
+            ..
+        } = self;
+        format!("{against:?}, {mass:?}, CFL {courant}")
+    }
+
     /// Step in s.
     pub(crate) fn dt(&self) -> f64 {
         self.courant * self.set.length / self.elements as f64 / self.set.wave_speed()

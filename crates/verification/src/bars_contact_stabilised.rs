@@ -18,7 +18,7 @@ use crate::bars::{Against, Run};
 use crate::blocks::SMALLEST;
 use crate::build::DISPLACEMENT;
 use crate::check::{Check, Row};
-use crate::figures::run;
+use crate::figures::{converging, run};
 
 const SCHEME: Scheme = Scheme::ContactStabilised(ContactStabilised {});
 
@@ -50,15 +50,8 @@ fn blocks() -> Result<[Row; 2], Error> {
 /// What one mesh leaves: error of the force, loss of speed, loss of energy.
 fn bars(case: &Run, rows: &mut Vec<Row>) -> Result<[f64; 3], Error> {
     let (history, figures) = run(case)?;
-    let Run {
-        against,
-        mass,
-        courant,
-        elements,
-        set,
-        ..
-    } = *case;
-    let name = format!("{against:?}, {mass:?}, CFL {courant}, n = {elements}");
+    let Run { elements, set, .. } = *case;
+    let name = format!("{}, n = {elements}", case.name());
     let row = |what: &str| format!("{name}: {what}");
     let start = 0.5 * set.density * set.area * set.length * set.speed.powi(2);
     rows.extend([
@@ -74,34 +67,6 @@ fn bars(case: &Run, rows: &mut Vec<Row>) -> Result<[f64; 3], Error> {
         1.0 - figures.restitution,
         -figures.energy_change,
     ])
-}
-
-/// A run and one with twice the elements.
-fn converging(case: Run) -> Result<Vec<Row>, Error> {
-    let mut rows = Vec::new();
-    let coarse = bars(&case, &mut rows)?;
-    let finer = Run {
-        elements: 2 * case.elements,
-        ..case
-    };
-    let fine = bars(&finer, &mut rows)?;
-    let exponents = [
-        ("force error", 1.0 / 3.0),
-        ("1 - restitution", 2.0 / 3.0),
-        ("energy lost", 1.0),
-    ];
-    for (k, (what, exponent)) in exponents.into_iter().enumerate() {
-        let Run {
-            against,
-            mass,
-            courant,
-            ..
-        } = case;
-        let name = format!("{against:?}, {mass:?}, CFL {courant}: {what}, n = 200 / n = 100");
-        let bound = 0.5_f64.powf(0.75 * exponent);
-        rows.push(Row::at_most(name, fine[k] / coarse[k], bound));
-    }
-    Ok(rows)
 }
 
 pub(crate) const CHECK: Check = Check {
@@ -120,7 +85,7 @@ pub(crate) const CHECK: Check = Check {
                         courant,
                         ..Run::slow(100)
                     };
-                    rows.extend(converging(case)?);
+                    rows.extend(converging(&case, bars)?);
                 }
             }
         }

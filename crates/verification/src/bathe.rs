@@ -22,7 +22,7 @@ use crate::Error;
 use crate::bars::{Against, Run};
 use crate::build::{DISPLACEMENT, group, newmark, velocity};
 use crate::check::{Check, Row, Size};
-use crate::figures::{History, run};
+use crate::figures::{History, converging, run};
 use crate::kept::Kept;
 
 /// The scheme with its default.
@@ -52,7 +52,7 @@ fn mean_force(history: &History, case: &Run) -> f64 {
 /// What one mesh leaves: error of the force, loss of speed, loss of energy.
 fn bars(case: &Run, rows: &mut Vec<Row>) -> Result<[f64; 3], Error> {
     let (history, figures) = run(case)?;
-    let name = name(case);
+    let name = case.name();
     let row = |what: &str| format!("{name}, n = {}: {what}", case.elements);
     rows.extend([
         Row::near(
@@ -74,42 +74,10 @@ fn bars(case: &Run, rows: &mut Vec<Row>) -> Result<[f64; 3], Error> {
     ])
 }
 
-fn name(case: &Run) -> String {
-    let Run {
-        against,
-        mass,
-        courant,
-        ..
-    } = *case;
-    format!("{against:?}, {mass:?}, CFL {courant}")
-}
-
-/// A run and one with twice the elements.
-fn converging(case: Run) -> Result<Vec<Row>, Error> {
-    let mut rows = Vec::new();
-    let coarse = bars(&case, &mut rows)?;
-    let finer = Run {
-        elements: 2 * case.elements,
-        ..case
-    };
-    let fine = bars(&finer, &mut rows)?;
-    let exponents = [
-        ("force error", 1.0 / 3.0),
-        ("1 - restitution", 2.0 / 3.0),
-        ("energy lost", 1.0),
-    ];
-    for (k, (what, exponent)) in exponents.into_iter().enumerate() {
-        let name = format!("{}: {what}, n = 200 / n = 100", name(&case));
-        let bound = 0.5_f64.powf(0.75 * exponent);
-        rows.push(Row::at_most(name, fine[k] / coarse[k], bound));
-    }
-    Ok(rows)
-}
-
 /// What the displacement law does.
 fn chatter(case: &Run) -> Result<[Row; 3], Error> {
     let (_, figures) = run(case)?;
-    let row = |what: &str| format!("{}, displacement law: {what}", name(case));
+    let row = |what: &str| format!("{}, displacement law: {what}", case.name());
     Ok([
         Row::shown(row("force error"), figures.force_error),
         Row::shown(row("changes after the closing"), figures.switches as f64),
@@ -206,7 +174,7 @@ pub(crate) const CHECK: Check = Check {
                     };
                     // the impact on a wall is that of two bars by symmetry
                     if size == Size::Full || against == Against::Bar && courant >= 1.0 {
-                        rows.extend(converging(case)?);
+                        rows.extend(converging(&case, bars)?);
                     }
                     if against == Against::Bar {
                         let law = DISPLACEMENT;

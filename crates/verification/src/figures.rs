@@ -79,6 +79,33 @@ pub(crate) fn run(run: &Run) -> Result<(History, Figures), Error> {
     Ok((history, figures))
 }
 
+/// Rows of a run and of one with twice the elements. `of`: the rows of one, and what it leaves: error of the force, loss of speed, loss of energy. The
+/// front of two bars is spread so that these go as n^-1/3, n^-2/3 and 1/n; three quarters of each exponent are asked for.
+pub(crate) fn converging(
+    case: &Run,
+    of: impl Fn(&Run, &mut Vec<Row>) -> Result<[f64; 3], Error>,
+) -> Result<Vec<Row>, Error> {
+    let mut rows = Vec::new();
+    let coarse = of(case, &mut rows)?;
+    let n = case.elements;
+    let finer = Run {
+        elements: 2 * n,
+        ..*case
+    };
+    let fine = of(&finer, &mut rows)?;
+    let exponents = [
+        ("force error", 1.0 / 3.0),
+        ("1 - restitution", 2.0 / 3.0),
+        ("energy lost", 1.0),
+    ];
+    for (k, (what, exponent)) in exponents.into_iter().enumerate() {
+        let name = format!("{}: {what}, n = {} / n = {n}", case.name(), 2 * n);
+        let bound = 0.5_f64.powf(0.75 * exponent);
+        rows.push(Row::at_most(name, fine[k] / coarse[k], bound));
+    }
+    Ok(rows)
+}
+
 /// The same, of another model of the same bars.
 pub(crate) fn run_stepper(
     run: &Run,

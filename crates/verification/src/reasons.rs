@@ -21,9 +21,7 @@ fn reason_of_zones(error: &carom_zones::Error) -> Option<String> {
         E::Zone { cause, .. } => reason_of_run(cause),
         E::Dynamics(error) => reason_of_run(error),
         E::System(error) => reason_of(error),
-        E::LinkScheme { cause, .. } => {
-            Some(format!("links between zones of unequal steps: {cause}"))
-        }
+        E::LinkScheme { cause, .. } => Some(format!("zones of unequal steps: {cause}")),
         E::AcrossZones { cause, .. } => Some(format!("between zones of unequal steps: {cause}")),
         _ => None,
     }

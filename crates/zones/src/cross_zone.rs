@@ -79,6 +79,8 @@ pub(crate) struct CrossZoneContacts {
     now: Vec<[f64; 2]>,
     /// Largest change of a force in the last pass, N.
     change: f64,
+    /// Room for what a pass changes in the forces on a zone, N.
+    change_of_forces: Vec<f64>,
 }
 
 impl CrossZoneContacts {
@@ -132,6 +134,7 @@ impl CrossZoneContacts {
             },
             now: vec![[0.0; 2]; count],
             change: 0.0,
+            change_of_forces: Vec::new(),
             system,
         }))
     }
@@ -181,28 +184,32 @@ impl CrossZoneContacts {
     ///
     /// # Errors
     /// A mass that is not positive definite.
-    pub(crate) fn jump(&self, zone: usize, driver: &mut Driver) -> Result<(), Error> {
-        let before = &self.state.pushed[zone];
-        if before.is_empty() {
+    pub(crate) fn jump(&mut self, zone: usize, driver: &mut Driver) -> Result<(), Error> {
+        if !self.jumps(zone) {
             return Ok(());
         }
-        let mut change = self.pushed(zone, before.len());
-        change
-            .iter_mut()
-            .zip(before)
-            .for_each(|(change, before)| *change -= before);
-        match change.iter().all(|change| *change == 0.0) {
-            true => Ok(()),
-            false => Ok(driver.jump_link_force(&change)?),
-        }
+        let mut change = std::mem::take(&mut self.change_of_forces);
+        change.resize(self.state.pushed[zone].len(), 0.0);
+        self.spread(zone, &mut change);
+        let before = self.state.pushed[zone].iter();
+        let both = change.iter_mut().zip(before);
+        both.for_each(|(change, before)| *change -= before);
+        let changes = change.iter().any(|change| *change != 0.0);
+        let jumped = match changes {
+            true => driver.jump_link_force(&change),
+            false => Ok(()),
+        };
+        self.change_of_forces = change;
+        Ok(jumped?)
     }
 
     /// Keeps the forces that stand on the zones.
     fn keep_pushed(&mut self) {
         let mut pushed = std::mem::take(&mut self.state.pushed);
-        let zones = pushed.iter_mut().enumerate();
-        for (zone, pushed) in zones.filter(|(_, pushed)| !pushed.is_empty()) {
-            *pushed = self.pushed(zone, pushed.len());
+        for (zone, pushed) in pushed.iter_mut().enumerate() {
+            if !pushed.is_empty() {
+                self.spread(zone, pushed);
+            }
         }
         self.state.pushed = pushed;
     }

@@ -74,9 +74,7 @@ pub enum Error {
         accepted: &'static str,
     },
     /// A scheme of a zone that no link to zones of other steps takes.
-    #[error(
-        "zone '{zone}': links between zones that step apart do not take the scheme {scheme}: {cause}"
-    )]
+    #[error("zone '{zone}' does not take the scheme {scheme} with steps of its own: {cause}")]
     LinkScheme {
         /// Name of the zone.
         zone: String,

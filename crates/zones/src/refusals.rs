@@ -101,8 +101,8 @@ impl Zoned {
                 return Err(Error::LinkScheme {
                     zone: zone.name.clone(),
                     scheme: scheme.name(),
-                    cause: "its step has stages, each with a balance of its own, and links and contacts between zones that step apart hold at \
-                            the ends of steps; take equal steps and one scheme for all zones",
+                    cause: "its step has stages, each with a balance of its own, and links and contacts between such zones hold at the ends of steps; take equal \
+                            steps and one scheme for all zones",
                 });
             }
             let answers = scheme.step_map(self.model.dt).velocity.x != 0.0;

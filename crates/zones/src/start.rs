@@ -172,7 +172,7 @@ impl Zones {
         if let Some(between) = &mut self.between {
             between.begin_dynamics(&self.drivers, end);
             for (zone, (driver, pushed)) in self.drivers.iter_mut().zip(&mut pushed).enumerate() {
-                *pushed = between.pushed(zone, driver.system().unknowns());
+                between.spread(zone, pushed);
                 let velocity = driver.system().initial.velocity.clone();
                 driver.begin_dynamics(&end.zones[zone], &velocity, pushed.clone())?;
             }

@@ -171,7 +171,7 @@ impl Zones {
                 }
                 driver.set_link_force(rows, force);
             }
-            if let Some(between) = &self.between {
+            if let Some(between) = &mut self.between {
                 between.push(k, driver);
                 if j == 0 {
                     between.jump(k, driver)?;

@@ -138,6 +138,11 @@ impl Whole {
         let mut state = empty_state(&system);
         state.motion.link_force = vec![0.0; system.unknowns()];
         state.records = Records::of(&system);
+        state.assemblies.of_whole_alone = zones.drivers.iter().any(|driver| {
+            let own = driver.system();
+            let identity = own.scheme.get().energy_identity(own.dt);
+            identity.is_none_or(|identity| identity.lag != 0.0 || identity.memory != 0.0)
+        });
         Whole {
             of_assembly: assemblies_of_zones(&zones, (&places, &system)),
             of_link: assemblies_of_links(&zones, (&places, &system)),
@@ -246,14 +251,6 @@ impl Whole {
             of.iter().copied().zip(energies)
         });
         self.state.assemblies.gather(system, zones, works);
-        self.state.assemblies.of_whole_alone = self.zones.drivers.iter().any(|driver| {
-            let identity = driver
-                .system()
-                .scheme
-                .get()
-                .energy_identity(driver.system().dt);
-            identity.is_none_or(|identity| identity.lag != 0.0 || identity.memory != 0.0)
-        });
     }
 
     /// Motion from the first zone that has a node, forces from all.

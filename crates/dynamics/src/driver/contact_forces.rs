@@ -9,6 +9,7 @@ use carom_contact::law::Status;
 use carom_nonsmooth::{Compliance as D, Condensed, ContactSolver, Unsolved};
 
 use super::Driver;
+use super::describe::rows_of;
 use super::owners::{Attempt, Contacts, Parts};
 use super::paired::sums_compliances;
 use crate::compliance::Compliance;
@@ -81,10 +82,7 @@ impl Driver {
             with_weak,
             ..
         } = &mut self.contacts;
-        let rows = match width {
-            1 => &pairing.rows,
-            _ => &*stacked,
-        };
+        let rows = rows_of(width, pairing, stacked);
         let (mut matrix, mut version) = match &mut linking {
             Some(linking) => linking.compliance(&system, (&mut *operators, compliance), rows),
             None => (compliance.matrix(), compliance.version),

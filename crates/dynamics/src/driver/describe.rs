@@ -1,13 +1,21 @@
 //! What the contact problem of an iteration is given: what the laws of its candidates know.
 
-use carom_contact::Rows;
 use carom_contact::law::Local;
+use carom_contact::{Pairing, Rows};
 use carom_nonsmooth::{ContactPoint, PointForces};
 
 use super::owners::{Attempt, Contacts, Parts};
 use crate::coulomb::Tangential;
 use crate::interface::Candidate;
 use crate::step_map::{Row, StepMap};
+
+/// The rows of points of this width: normals alone, or each with its tangents.
+pub(super) fn rows_of<'a>(width: u32, pairing: &'a Pairing, stacked: &'a Rows) -> &'a Rows {
+    match width {
+        1 => &pairing.rows,
+        _ => stacked,
+    }
+}
 
 impl Contacts {
     /// A contact point before the forces of the iteration: the one description that all problems of a step are made of.
@@ -56,10 +64,7 @@ impl Contacts {
 
     /// The rows of points of this width.
     pub(super) fn rows(&self, width: u32) -> &Rows {
-        match width {
-            1 => &self.pairing.rows,
-            _ => &self.stacked,
-        }
+        rows_of(width, &self.pairing, &self.stacked)
     }
 
     /// What the laws of the candidates know, and what friction adds; of adaptive steps their gaps without contact forces too.

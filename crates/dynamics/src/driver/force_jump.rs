@@ -15,7 +15,7 @@ use std::sync::Arc;
 use carom_algebra::reduce::dot;
 
 use super::Driver;
-use super::owners::Links;
+use super::owners::Attempt;
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::resultant::Resultant;
@@ -41,36 +41,45 @@ impl Driver {
     /// A mass that is not positive definite.
     pub fn jump_link_force(&mut self, change: &[f64]) -> Result<(), Error> {
         self.parts.prepared = false;
-        let system = Arc::clone(&self.attempt.system);
-        let given = self.links.accelerations(&system, change)?;
-        let inertia_of_scheme = self.attempt.identity_of_ledger().inertia;
-        let state = &mut self.attempt.state;
-        let mut inertia = vec![0.0; given.len()];
-        system.mass.multiply(&given, &mut inertia);
+        let mut jump = std::mem::take(&mut self.links.jump);
+        let solved = jump.solve(&self.attempt.system, change);
+        if solved.is_ok() {
+            self.attempt.take_jump(change, &jump);
+        }
+        self.links.jump = jump;
+        solved
+    }
+}
+
+impl Attempt {
+    /// Adds forces (N) and what they give to the state.
+    fn take_jump(&mut self, change: &[f64], jump: &ForceJump) {
+        let system = Arc::clone(&self.system);
+        let inertia_of_scheme = self.identity_of_ledger().inertia;
+        let ForceJump {
+            given,
+            inertia,
+            reaction,
+            ..
+        } = jump;
+        let state = &mut self.state;
         // Δ|a|²_M = (2 a + Δa) · M Δa
-        let square = 2.0 * dot(&state.motion.a, &inertia) + dot(&given, &inertia);
-        add(&mut state.motion.a, &given);
+        let square = 2.0 * dot(&state.motion.a, inertia) + dot(given, inertia);
+        add(&mut state.motion.a, given);
         add(&mut state.motion.link_force, change);
-        let unknowns = 0..change.len();
-        let held = |i: usize| match system.fixed[i] {
-            true => inertia[i] - change[i],
-            false => 0.0,
-        };
-        let reaction: Vec<f64> = unknowns.map(held).collect();
         let forces = &mut state.forces;
         add(&mut forces.link, change);
-        add(&mut forces.inertia, &inertia);
-        add(&mut forces.reaction, &reaction);
+        add(&mut forces.inertia, inertia);
+        add(&mut forces.reaction, reaction);
         let motion = &state.motion;
         let resultant = |force: &[f64]| match system.is_nonlinear() {
             true => Resultant::at(&system, (&motion.frames, &[&motion.u]), force),
             false => Resultant::of(&system, force),
         };
-        let outside = [resultant(change), resultant(&reaction)];
+        let outside = [resultant(change), resultant(reaction)];
         state.ledger.jump_force(outside, inertia_of_scheme * square);
         let outside = |i: usize| change[i] + reaction[i];
         state.exchange.jump_force(&system, outside);
-        Ok(())
     }
 }
 
@@ -79,28 +88,49 @@ fn add(kept: &mut [f64], change: &[f64]) {
     kept.iter_mut().zip(change).for_each(|(k, more)| *k += more);
 }
 
-impl Links {
-    /// M⁻¹ of forces (N) on what is not held, m/s².
+/// What forces that jump give: buffers by unknown, and the mass once they have.
+#[derive(Default)]
+pub(super) struct ForceJump {
+    mass: Option<Operators>,
+    /// Those on what is not held, N, and the solve with them.
+    free: Vec<f64>,
+    half: Vec<f64>,
+    /// Accelerations, m/s².
+    pub(super) given: Vec<f64>,
+    /// Inertia, and what supports take, N.
+    inertia: Vec<f64>,
+    reaction: Vec<f64>,
+}
+
+impl ForceJump {
+    /// M⁻¹ of forces (N) on what is not held, inertia, reactions.
     ///
     /// # Errors
     /// A mass that is not positive definite.
-    pub(super) fn accelerations(
-        &mut self,
-        system: &System,
-        forces: &[f64],
-    ) -> Result<Vec<f64>, Error> {
+    pub(super) fn solve(&mut self, system: &System, forces: &[f64]) -> Result<(), Error> {
         let mass = match &mut self.mass {
             Some(mass) => mass,
             none => none.insert(Operators::new(system, 1.0, 0.0, "mass matrix")?),
         };
-        let of = forces.iter().zip(&system.fixed);
-        let free: Vec<f64> = of
-            .map(|(force, fixed)| if *fixed { 0.0 } else { *force })
-            .collect();
-        let (mut half, mut given) = (vec![0.0; free.len()], vec![0.0; free.len()]);
-        mass.begin(&free, &mut half);
-        mass.end(&mut half, &mut given);
-        Ok(given)
+        let buffers = [&mut self.half, &mut self.given, &mut self.inertia];
+        for buffer in buffers {
+            buffer.resize(forces.len(), 0.0);
+        }
+        let held = || forces.iter().zip(&system.fixed);
+        self.free.clear();
+        let free = held().map(|(force, fixed)| if *fixed { 0.0 } else { *force });
+        self.free.extend(free);
+        mass.begin(&self.free, &mut self.half);
+        mass.end(&mut self.half, &mut self.given);
+        system.mass.multiply(&self.given, &mut self.inertia);
+        self.reaction.clear();
+        let held = held().zip(&self.inertia);
+        let held = held.map(|((force, fixed), inertia)| match fixed {
+            true => inertia - force,
+            false => 0.0,
+        });
+        self.reaction.extend(held);
+        Ok(())
     }
 }
 

@@ -105,7 +105,8 @@ impl Driver {
                     force[dof as usize] += c * multipliers[*row as usize];
                 }
             }
-            zone.motion.a = self.links.accelerations(&system, &force)?;
+            self.links.jump.solve(&system, &force)?;
+            zone.motion.a.copy_from_slice(&self.links.jump.given);
         }
         if let Some((mut operators, stiffness)) = zone.own.take() {
             let forces = &mut |u: &[f64], f: &mut [f64]| stiffness.multiply(u, f);

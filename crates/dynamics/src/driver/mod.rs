@@ -109,7 +109,7 @@ use crate::state::State;
 use crate::step_map::StepMap;
 use crate::system::System;
 use crate::watch::Watch;
-use owners::{Attempt, Balances, Contacts, Explicit, Links, Parts, RankWork, Stages};
+use owners::{Attempt, Balances, Contacts, Explicit, Links, Parts, RankWork, SizeOfMaps, Stages};
 pub use ranked::RankShare;
 use scratch::Vectors;
 pub use unfit::why_not_on_ranks;
@@ -312,7 +312,12 @@ impl Contacts {
     /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
     pub(super) fn size(&mut self, attempt: &mut Attempt, dt: f64, next: f64) {
         attempt.dt = dt;
-        let sized = Some(((dt, next), attempt.is_static(), attempt.stage.key()));
+        let sized = Some(SizeOfMaps {
+            dt,
+            next,
+            is_static: attempt.is_static(),
+            stage: attempt.stage.key(),
+        });
         if attempt.sized == sized {
             return;
         }

@@ -16,6 +16,7 @@ use super::closings::Closings;
 use super::effective::Effective;
 use super::far::Far;
 use super::floating::Floating;
+use super::force_jump::ForceJump;
 use super::impulse::Impulses;
 use super::leapfrog::Direct;
 use super::linking::Multipliers;
@@ -33,7 +34,6 @@ use crate::costs::Phases;
 use crate::coulomb::{FrictionProblem, Slip};
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
-use crate::operator::Operators;
 use crate::report::Notices;
 use crate::resultant::Resultant;
 use crate::scheme::EnergyIdentity;
@@ -212,8 +212,7 @@ impl Parts {
 pub(super) struct Links {
     /// Forces of links in the step, N; empty without links.
     pub(super) force: Vec<f64>,
-    /// The mass, where such forces have jumped.
-    pub(super) mass: Option<Operators>,
+    pub(super) jump: ForceJump,
     pub(super) multipliers: Multipliers,
     /// The rows of the links; those that turn as they are in the iteration.
     pub(super) rows: Arc<Vec<LinkRow>>,
@@ -228,7 +227,7 @@ impl Links {
         };
         Links {
             force: vec![0.0; unknowns],
-            mass: None,
+            jump: ForceJump::default(),
             multipliers: Multipliers::new(system),
             rows: Arc::clone(&system.links.rows),
         }
@@ -262,8 +261,16 @@ pub(super) struct Balances {
     pub(super) works: Works,
 }
 
-/// What the maps of an attempt are of: its size and that of the next one, s; whether it is static; the stage, and the step that this belongs to, s.
-pub(super) type Sized = ((f64, f64), bool, (usize, f64));
+/// What the maps of an attempt are of.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct SizeOfMaps {
+    /// Size of the attempt and of the one after it, s.
+    pub(super) dt: f64,
+    pub(super) next: f64,
+    pub(super) is_static: bool,
+    /// Number of the stage, and the step that it belongs to, s.
+    pub(super) stage: (usize, f64),
+}
 
 /// The attempt of a step under way: where it begins, how large it is, where it ends.
 pub(super) struct Attempt {
@@ -274,7 +281,7 @@ pub(super) struct Attempt {
     /// The stage of the step that the attempt computes, of schemes of several.
     pub(super) stage: SchemeStage,
     /// What these maps are of; none before they are made.
-    pub(super) sized: Option<Sized>,
+    pub(super) sized: Option<SizeOfMaps>,
     /// The energy identity of the scheme; none of a static step, or where none is known.
     pub(super) identity: Option<EnergyIdentity>,
     /// Ends the attempt under way where it is set.

@@ -7,17 +7,8 @@
 use carom_laws::Status;
 
 use super::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
-use crate::Compliance;
 use crate::interface::Candidate;
-
-/// What was found of the points of a problem.
-#[derive(Clone)]
-struct Found {
-    forces: Vec<f64>,
-    tangential: Vec<[f64; 2]>,
-    statuses: Vec<Status>,
-    slips: Vec<Slip>,
-}
+use crate::{Compliance, PointForces};
 
 impl Coulomb {
     /// Cuts tension off in the solution just found, where D is known entry by entry. Where no set of points is found in which none pulls
@@ -34,7 +25,7 @@ impl Coulomb {
             return;
         }
         let mut kept: Vec<usize> = (0..problem.len()).collect();
-        let whole = self.found();
+        let whole: Vec<PointForces> = self.found().collect();
         let (passes, sweeps) = (self.passes, self.sweeps);
         let mut settled = None;
         for _ in 0..2 * problem.len() {
@@ -58,7 +49,12 @@ impl Coulomb {
         }
         let found = settled.unwrap_or_else(|| without_tension(problem, whole));
         (self.passes, self.sweeps) = (passes, sweeps);
-        self.give(problem, found);
+        let n = problem.len();
+        self.forces.resize(n, 0.0);
+        self.tangential.resize(n, [0.0; 2]);
+        self.statuses.resize(n, Status::Open);
+        self.slips.resize(n, Slip::Open);
+        self.give(problem, &found);
     }
 
     /// Solves for some of the points alone.
@@ -92,62 +88,53 @@ impl Coulomb {
         self.settle_with_tension(&own)
     }
 
-    fn found(&self) -> Found {
-        Found {
-            forces: self.forces.clone(),
-            tangential: self.tangential.clone(),
-            statuses: self.statuses.clone(),
-            slips: self.slips.clone(),
-        }
-    }
-
     /// What was found of the points kept; the others have the status that they had with tension, and no force.
-    fn spread(&self, kept: &[usize], whole: &Found) -> Found {
-        let n = whole.forces.len();
-        let mut found = Found {
-            forces: vec![0.0; n],
-            tangential: vec![[0.0; 2]; n],
-            statuses: whole.statuses.clone(),
-            slips: vec![Slip::Open; n],
-        };
-        for (place, &i) in kept.iter().enumerate() {
-            found.forces[i] = self.forces[place];
-            found.tangential[i] = self.tangential[place];
-            found.statuses[i] = self.statuses[place];
-            found.slips[i] = self.slips[place];
+    fn spread(&self, kept: &[usize], whole: &[PointForces]) -> Vec<PointForces> {
+        let open = whole.iter().map(|point| PointForces {
+            status: point.status,
+            ..PointForces::default()
+        });
+        let mut found: Vec<PointForces> = open.collect();
+        for (&i, own) in kept.iter().zip(self.found()) {
+            found[i] = own;
         }
         found
     }
 
     /// Makes this the solution of the problem.
-    fn give(&mut self, problem: &Posed, found: Found) {
+    fn give(&mut self, problem: &Posed, found: &[PointForces]) {
         self.trial.start(problem);
         let width = 1 + problem.tangents;
-        for (i, (force, t)) in found.forces.iter().zip(&found.tangential).enumerate() {
-            self.trial.p[i * width] = *force;
-            self.trial.p[i * width + 1..(i + 1) * width].copy_from_slice(&t[..problem.tangents]);
+        for (i, own) in found.iter().enumerate() {
+            self.trial.p[i * width] = own.normal;
+            self.trial.p[i * width + 1..(i + 1) * width]
+                .copy_from_slice(&own.tangential[..problem.tangents]);
+            self.trial.statuses[i] = own.status;
+            (self.forces[i], self.tangential[i]) = (own.normal, own.tangential);
+            (self.statuses[i], self.slips[i]) = (own.status, own.slip);
         }
-        self.trial.statuses.clone_from(&found.statuses);
         self.trial.multiply(problem);
-        (self.forces, self.tangential) = (found.forces, found.tangential);
-        (self.statuses, self.slips) = (found.statuses, found.slips);
     }
 }
 
 /// A point without force whose law presses.
-fn pressing((problem, d): (&Posed, &[f64]), kept: &[usize], found: &Found) -> Option<usize> {
+fn pressing(
+    (problem, d): (&Posed, &[f64]),
+    kept: &[usize],
+    found: &[PointForces],
+) -> Option<usize> {
     let (n, width) = (problem.rows(), 1 + problem.tangents);
     let product = |i: usize| -> f64 {
         let row = &d[i * width * n..(i * width + 1) * n];
-        let of_point = |(j, force): (usize, &f64)| {
-            let t = &found.tangential[j][..problem.tangents];
+        let of_point = |(j, own): (usize, &PointForces)| {
+            let t = &own.tangential[..problem.tangents];
             let along = t.iter().zip(&row[j * width + 1..]);
-            row[j * width] * force + along.map(|(t, d)| t * d).sum::<f64>()
+            row[j * width] * own.normal + along.map(|(t, d)| t * d).sum::<f64>()
         };
-        found.forces.iter().enumerate().map(of_point).sum()
+        found.iter().enumerate().map(of_point).sum()
     };
     let presses = |&i: &usize| {
-        let relation = problem.relation(i, found.statuses[i]);
+        let relation = problem.relation(i, found[i].status);
         let product = product(i);
         let end = problem.end(i, 0.0, product, product);
         relation.gap * end.gap + relation.rate * end.rate + relation.offset < 0.0
@@ -158,10 +145,10 @@ fn pressing((problem, d): (&Posed, &[f64]), kept: &[usize], found: &Found) -> Op
 }
 
 /// A solution with tension set to zero in it.
-fn without_tension(problem: &Posed, mut found: Found) -> Found {
-    for (force, candidate) in found.forces.iter_mut().zip(problem.candidates) {
+fn without_tension(problem: &Posed, mut found: Vec<PointForces>) -> Vec<PointForces> {
+    for (own, candidate) in found.iter_mut().zip(problem.candidates) {
         if candidate.law.get().clips() {
-            *force = force.max(0.0);
+            own.normal = own.normal.max(0.0);
         }
     }
     found

@@ -9,8 +9,8 @@ use super::rows::Rows;
 use super::sweep::Product;
 use super::trial::Trial;
 use super::{FrictionFailure, Posed, Slip, newton, sweep};
-use crate::Compliance;
 use crate::tangents::{Tangents, are_linear};
+use crate::{Compliance, PointForces};
 
 /// Largest defect of a solution, relative to the terms that should balance in its candidate. Passes go on to it where they
 /// can; where they bring nothing more, [`Posed::tolerance`] decides.
@@ -96,6 +96,16 @@ pub struct Coulomb {
 }
 
 impl Coulomb {
+    /// What the last solve found of each candidate.
+    pub(crate) fn found(&self) -> impl Iterator<Item = PointForces> + '_ {
+        (0..self.forces.len()).map(|k| PointForces {
+            normal: self.forces[k],
+            tangential: self.tangential[k],
+            status: self.statuses[k],
+            slip: self.slips[k],
+        })
+    }
+
     /// Solves for the forces and statuses. Relations of laws that are not linear are renewed until they stand; points that slide where
     /// they would slide with the larger coefficient too have the lower one.
     pub fn solve(&mut self, problem: &Posed) -> Result<(), FrictionFailure> {

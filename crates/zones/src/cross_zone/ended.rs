@@ -150,15 +150,14 @@ impl CrossZoneContacts {
         self.keep_pushed();
     }
 
-    /// Force of the candidates on a zone of so many unknowns, N.
-    pub(crate) fn pushed(&self, zone: usize, unknowns: usize) -> Vec<f64> {
-        let mut force = vec![0.0; unknowns];
+    /// Makes `force` (N, by unknown of a zone) that of the candidates.
+    pub(crate) fn spread(&self, zone: usize, force: &mut [f64]) {
+        force.fill(0.0);
         for (row, terms) in &self.candidates.rows[zone] {
             for &(unknown, c) in terms {
                 force[unknown as usize] += c * self.candidates.forces[*row as usize];
             }
         }
-        force
     }
 
     /// Moment of a contact about the point that it names, at the mean of the places at start and end of the step, N m.

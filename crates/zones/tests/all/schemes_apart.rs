@@ -4,7 +4,7 @@ use carom_bodies::{BodySpec, Kinematics};
 use carom_dynamics::scheme::EnergyMomentum;
 use carom_dynamics::{Driver, Model, ModelBody, ModelLink, Scheme};
 use carom_materials::Elastic;
-use carom_mesh::generate;
+use carom_mesh::{Mesh, generate};
 use carom_zones::{LinkKind, ModelZone, Zoned, Zones};
 
 const SOFT: Elastic = Elastic {
@@ -13,6 +13,13 @@ const SOFT: Elastic = Elastic {
     poisson: 0.0,
 };
 
+/// A bar of a group, of unit impedance.
+pub(crate) fn soft_bar(mesh: &Mesh, group: &str) -> ModelBody {
+    let cells = mesh.groups[group].elements.clone();
+    let kinematics = Kinematics::Bar { area: 1.0 };
+    ModelBody::new(BodySpec::new(group, cells, kinematics, SOFT))
+}
+
 /// Two bars end to end, tied in one node; the first takes `m` steps in one of the second, with elements as much smaller.
 fn bars(scheme: Scheme, m: u32, n: usize) -> Zoned {
     let line = |name: &str, from: f64, n| {
@@ -20,16 +27,7 @@ fn bars(scheme: Scheme, m: u32, n: usize) -> Zoned {
     };
     let mut mesh = line("fine", -1.0, n * m as usize);
     mesh.merge("coarse", line("coarse", 0.0, n)).unwrap();
-    let body = |name: &str| {
-        let cells = mesh.groups[name].elements.clone();
-        ModelBody::new(BodySpec::new(
-            name,
-            cells,
-            Kinematics::Bar { area: 1.0 },
-            SOFT,
-        ))
-    };
-    let bodies = vec![body("fine"), body("coarse")];
+    let bodies = vec![soft_bar(&mesh, "fine"), soft_bar(&mesh, "coarse")];
     let nodes = |group: &str| mesh.group_nodes(&mesh.groups[group]);
     let rows = carom_arlequin::trace(&mesh, &nodes("fine"), &nodes("coarse"), 1e-9)
         .unwrap()

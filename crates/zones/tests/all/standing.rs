@@ -1,19 +1,14 @@
 //! Forces that stand over the outer step between zones of every scheme that takes them.
 
-use carom_bodies::{BodySpec, Kinematics};
 use carom_contact::Law;
 use carom_contact::law::{Capture, Reading, Velocity};
 use carom_dynamics::scheme::{CentralDifference, EnergyMomentum, Newmark, Theta};
-use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget, Scheme, Stepper};
-use carom_materials::Elastic;
+use carom_dynamics::{Model, ModelContact, ModelTarget, Scheme, Stepper};
 use carom_mesh::{Surface, generate};
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
-const SOFT: Elastic = Elastic {
-    density: 1.0,
-    young: 1.0,
-    poisson: 0.0,
-};
+use crate::schemes_apart::soft_bar;
+
 const N: usize = 50;
 
 fn velocity() -> Law {
@@ -30,16 +25,7 @@ fn bars(schemes: [Scheme; 2], m: [u32; 2], law: Law) -> Zoned {
     };
     let mut mesh = line("one", -1.0);
     mesh.merge("other", line("other", 0.0)).unwrap();
-    let body = |name: &str| {
-        let cells = mesh.groups[name].elements.clone();
-        ModelBody::new(BodySpec::new(
-            name,
-            cells,
-            Kinematics::Bar { area: 1.0 },
-            SOFT,
-        ))
-    };
-    let mut bodies = vec![body("one"), body("other")];
+    let mut bodies = vec![soft_bar(&mesh, "one"), soft_bar(&mesh, "other")];
     bodies[0].velocity = [1.0, 0.0, 0.0];
     let side = |group: &str, body: usize| {
         let cells: &[_] = &bodies[body].spec.cells;
