@@ -62,7 +62,7 @@ pub use driver::linearised;
 pub use driver::linked;
 pub use driver::paired;
 pub use driver::record::contact_report;
-pub use driver::tangents::Rubbing;
+pub use driver::Rubbing;
 pub use driver::{Driver, RankShare, why_not_on_ranks};
 pub use error::{Error, MeshNode};
 pub use exchange::Exchange;

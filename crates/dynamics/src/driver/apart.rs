@@ -7,11 +7,10 @@ use carom_nonsmooth::Unsolved;
 use rayon::prelude::*;
 
 use super::Driver;
-use super::leapfrog::Apart;
-use super::owners::{Attempt, Contacts};
-use super::span::{Candidates, Span};
+use super::contacts::span::Candidates;
+use super::explicit::leapfrog::Apart;
 use crate::error::Error;
-use crate::groups::{Masses, PointRows};
+use crate::groups::Masses;
 
 /// Rows of the largest group whose problem is kept where it is not solved.
 const KEPT: usize = 1000;
@@ -99,37 +98,5 @@ impl Driver {
             .describe_candidates(attempt, width, |contacts, number| {
                 contacts.rows_of_points(attempt).product(number, room)
             });
-    }
-}
-
-impl Contacts {
-    /// Splits the candidates into groups.
-    pub(super) fn split(&self, attempt: &Attempt, apart: &mut Apart) {
-        let (rows, fixed) = (self.rows_of_points(attempt), &attempt.system.fixed);
-        let unknowns = |point: u32| {
-            let numbers = point * rows.width()..(point + 1) * rows.width();
-            let dofs = numbers.flat_map(|number| rows.row(number).0);
-            let dofs = dofs.map(|&dof| dof as usize);
-            dofs.filter(|&dof| !fixed[dof])
-        };
-        apart.groups.split(&self.candidates, unknowns, fixed.len());
-    }
-
-    /// The rows of all points.
-    pub(super) fn rows_of_points(&self, attempt: &Attempt) -> PointRows<'_> {
-        PointRows {
-            normals: &self.pairing.rows,
-            tangents: &self.pairing.tangents[..attempt.system.tangents()],
-        }
-    }
-
-    /// What was found for the candidates of all groups.
-    fn gather(&mut self, spans: &[Span]) {
-        self.solver.open(0);
-        let found = spans.iter().flat_map(|span| &span.found);
-        self.solver.found.extend(found);
-        let passes = spans.iter().map(|span| span.passes);
-        self.solver.passes = passes.max().unwrap_or(0);
-        self.solver.unsettled = spans.iter().find_map(|span| span.unsettled);
     }
 }

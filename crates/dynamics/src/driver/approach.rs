@@ -7,7 +7,7 @@
 //! so that where the iterations end nothing of it is left: the balance of forces is tested without it. Iterations shrink
 //! errors by σ/(σ + k), k the stiffness with which contacts hold the piece over |diag K|. A round body whose edge has straight sides
 //! rolls with a k of 1e-8 to 1e-6 and of either sign; mixing of the iterations finds its equilibrium all the same, stable or
-//! not, if it is not misled: turns are finite ([`super::rigid`]), and motions that nothing holds stay within what an
+//! not, if it is not misled: turns are finite ([`crate::driver::parts::rigid`]), and motions that nothing holds stay within what an
 //! iteration knows of the surfaces. A motion that nothing holds and nothing loads stays as it is.
 //!
 //! What is loaded along such a motion is moved on to the next contact; where none is on its way there is no equilibrium
@@ -18,12 +18,9 @@
 
 use std::sync::Arc;
 
-use carom_contact::Target;
 
 use super::Driver;
-use super::floating::body_of;
-use super::owners::{Attempt, Contacts, Parts};
-use super::rigid::{INDEPENDENT, Rigid, Span, norm};
+use super::parts::rigid::{Rigid, Span, norm};
 use crate::coulomb::Slip;
 use crate::error::Error;
 
@@ -212,141 +209,5 @@ impl Driver {
             }
         }
         held
-    }
-}
-
-impl Attempt {
-    pub(super) fn unheld(&self, rigid: &Rigid, c: &[f64]) -> Error {
-        let (piece, motion) = rigid.name(c);
-        Error::Unheld {
-            step: self.state.step + 1,
-            time: self.state.time + self.dt,
-            body: body_of(&self.system, piece),
-            motion: motion.to_string(),
-        }
-    }
-
-    /// Displacement of the nodes at the x of the iteration, m.
-    pub(super) fn places(&self) -> Vec<f64> {
-        let mut places = vec![0.0; self.vectors.x.len()];
-        let (motion, x) = (&self.state.motion, &self.vectors.x);
-        self.maps.whole(
-            |map| map.displacement,
-            motion,
-            [x, &self.vectors.push],
-            &mut places,
-        );
-        places
-    }
-
-    /// Points that carry a force.
-    pub(super) fn carrying(&self) -> impl Iterator<Item = usize> + '_ {
-        let forces = self.next.interface.force.iter().enumerate();
-        forces
-            .filter(|(_, force)| **force != 0.0)
-            .map(|(point, _)| point)
-    }
-}
-
-impl Parts {
-    /// Adds to x what finite turns of the pieces have beyond the linear motion `share` dx from `before`.
-    pub(super) fn turn(&self, attempt: &mut Attempt, share: f64) {
-        let system = Arc::clone(&attempt.system);
-        let mut places = vec![0.0; attempt.vectors.x.len()];
-        let motion = &attempt.state.motion;
-        attempt.maps.whole(
-            |map| map.displacement,
-            motion,
-            [&attempt.vectors.before, &attempt.vectors.push],
-            &mut places,
-        );
-        let pieces = Arc::clone(&self.floating.pieces);
-        let rigid = Rigid::new(
-            &system,
-            &pieces,
-            (&places, Some(&attempt.state.motion.frames)),
-        );
-        let mut c = rigid.nearest(&attempt.vectors.dx);
-        c.iter_mut().for_each(|c| *c *= share);
-        for (i, u) in rigid.arc(&c) {
-            attempt.vectors.x[i] += u;
-        }
-    }
-}
-
-impl Contacts {
-    /// Multiple of a rigid motion at which the first of the open points closes; none where none comes closer.
-    pub(super) fn way_to_contact(
-        &self,
-        attempt: &Attempt,
-        rigid: &Rigid,
-        c: &[f64],
-    ) -> Option<f64> {
-        let mut way: Option<f64> = None;
-        for point in 0..attempt.system.points() {
-            if attempt.next.interface.force[point] != 0.0
-                || self.pairing.rows.gap(point).is_infinite()
-            {
-                continue;
-            }
-            let row = rigid.contact_row(&self.pairing.rows, point);
-            let rate: f64 = row.iter().zip(c).map(|(n, c)| n * c).sum();
-            if rate < -INDEPENDENT * norm(&row) * norm(c) {
-                let until = self.now(attempt, point, true).0.max(0.0) / -rate;
-                way = Some(way.map_or(until, |way| way.min(until)));
-            }
-        }
-        way
-    }
-
-    /// Whether contact carries a piece that has gone on, for as many iterations as may be taken, along a motion with no contact on
-    /// its way, and its load has not become less than half.
-    pub(super) fn tips(&self, parts: &mut Parts, attempt: &Attempt, rigid: &Rigid) -> bool {
-        let load = norm(&parts.floating.load);
-        let carried = parts.floating.load == parts.floating.carried && load > parts.left_over;
-        if !carried {
-            return false;
-        }
-        let free = self
-            .way_to_contact(attempt, rigid, &parts.floating.load)
-            .is_none();
-        let floating = &mut parts.floating;
-        if !free || load < 0.5 * floating.tipped {
-            (floating.tipping, floating.tipped) = (0, 0.0);
-            return false;
-        }
-        if floating.tipping == 0 {
-            floating.tipped = load;
-        }
-        floating.tipping += 1;
-        floating.tipping >= attempt.system.nonlinear.iteration.passes
-    }
-
-    /// Pieces that hang together by contact forces with something that does not float.
-    pub(super) fn grounded(&self, parts: &Parts, attempt: &Attempt) -> Vec<usize> {
-        let pieces = &*parts.floating.pieces;
-        let count = pieces.len();
-        // one set more: all that does not float
-        let mut set: Vec<usize> = (0..=count).collect();
-        for point in attempt.carrying() {
-            let (contact, _) = attempt.system.point(point);
-            let (unknowns, _) = self.pairing.rows.row(point);
-            let touched = unknowns
-                .iter()
-                .map(|&i| pieces.of(i as usize).unwrap_or(count));
-            let mut touched: Vec<usize> = touched.collect();
-            if matches!(contact.target, Target::Rigid(_)) {
-                touched.push(count);
-            }
-            for pair in touched.windows(2) {
-                let [from, to] = [pair[0], pair[1]].map(|piece| set[piece]);
-                for set in set.iter_mut().filter(|set| **set == from) {
-                    *set = to;
-                }
-            }
-        }
-        (0..count)
-            .filter(|&piece| set[piece] == set[count])
-            .collect()
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Driver;
-use super::leapfrog::Direct;
+use super::explicit::leapfrog::Direct;
 use crate::assembly_energy::PartMotion;
 use crate::resultant::Resultant;
 use crate::step_forces::OutsideForces;

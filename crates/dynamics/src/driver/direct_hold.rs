@@ -6,10 +6,8 @@
 use std::sync::Arc;
 
 use super::Driver;
-use super::direct_links::DirectLinks;
-use super::leapfrog::Direct;
-use super::linking::of_mass;
-use super::owners::{Attempt, Links};
+use super::explicit::leapfrog::Direct;
+use super::links::linking::of_mass;
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::system::LinkRow;
@@ -72,32 +70,5 @@ impl Driver {
         links.condensed = Some(condensed);
         self.links.spread_links(&mut self.attempt, &direct.links);
         Ok(())
-    }
-}
-
-impl Links {
-    /// Forces of the multipliers, and their part of the forces beside internal ones.
-    pub(super) fn spread_links(&mut self, attempt: &mut Attempt, links: &DirectLinks) {
-        let system = &*attempt.system;
-        let force = &mut self.force;
-        force.resize(system.unknowns(), 0.0);
-        for &unknown in &links.unknowns {
-            force[unknown as usize] = 0.0;
-        }
-        for (row, l) in system.links.rows.iter().zip(&self.multipliers.now) {
-            for &(dof, c) in row {
-                force[dof as usize] += c * l;
-            }
-        }
-        let (beside, end) = (
-            &mut attempt.vectors.damping,
-            &mut attempt.next.motion.link_force,
-        );
-        end.resize(system.unknowns(), 0.0);
-        for &unknown in &links.unknowns {
-            let i = unknown as usize;
-            beside[i] -= force[i];
-            end[i] = force[i];
-        }
     }
 }

@@ -4,48 +4,15 @@
 use std::sync::Arc;
 
 use carom_algebra::reduce::dot;
-use carom_bodies::Body;
 
 use super::Driver;
-use super::owners::{Attempt, Parts};
-use super::reported;
+use super::attempt::identity::{End, squares};
+use super::attempt::vectors::Vectors;
+use super::balances::reported;
 use crate::ledger::reactions;
 use crate::resultant::Resultant;
-use crate::scheme::EnergyIdentity;
 use crate::step_forces::OutsideForces;
-use crate::step_map::Impulse;
-use crate::step_terms::{Energies, Squares, StepTerms};
-use crate::system::{Motion, System};
-
-/// How contact forces work in the energy balance.
-#[derive(Clone, Copy)]
-pub(super) struct WorkWeights {
-    /// Weight of the forces at the start.
-    pub(super) old: f64,
-    /// Weight of the forces of the step.
-    pub(super) new: f64,
-    /// How far the displacements on which they work lie back along the velocity, s.
-    pub(super) lag: f64,
-}
-
-impl WorkWeights {
-    /// Whether they count otherwise than forces with these weights at the start and of the step.
-    pub(super) fn differ(&self, weights: [f64; 2]) -> bool {
-        self.lag != 0.0 || [self.old, self.new] != weights
-    }
-
-    /// Work of the contact forces on the way Δū of the step, J.
-    pub(super) fn of(&self, [old, new]: [&Motion; 2], travel: &[f64]) -> f64 {
-        self.old * dot(travel, &old.contact_force) + self.new * dot(travel, &new.contact_force)
-    }
-}
-
-/// One of the two states around the step.
-#[derive(Clone, Copy)]
-pub(super) enum End {
-    Start,
-    Finish,
-}
+use crate::step_terms::{Squares, StepTerms};
 
 impl Driver {
     /// Energy and momentum of the step.
@@ -66,7 +33,7 @@ impl Driver {
         let contact = Resultant::of(&system, &new.contact_force);
         let loads = Resultant::of(&system, &system.load);
         let links = Resultant::of(&system, &new.link_force);
-        let super::Vectors {
+        let Vectors {
             before: travel,
             place,
             work,
@@ -134,7 +101,7 @@ impl Driver {
     fn reactions(&mut self) -> [Resultant; 2] {
         let system = Arc::clone(&self.attempt.system);
         if self.attempt.maps.first().force_fraction.is_none() {
-            let super::Vectors { x, push, place, .. } = &mut self.attempt.vectors;
+            let Vectors { x, push, place, .. } = &mut self.attempt.vectors;
             self.attempt.maps.whole(
                 |map| map.force,
                 &self.attempt.state.motion,
@@ -144,11 +111,11 @@ impl Driver {
             self.parts.linear_forces(&mut self.attempt);
         }
         let (old, new) = (&self.attempt.state.motion, &self.attempt.next.motion);
-        let super::Vectors { work, inertia, .. } = &mut self.attempt.vectors;
+        let Vectors { work, inertia, .. } = &mut self.attempt.vectors;
         reactions(&system, self.attempt.maps.first(), old, new, inertia, work);
         self.attempt.take_linear_springs();
         let new = &self.attempt.next.motion;
-        let super::Vectors { half, work, .. } = &mut self.attempt.vectors;
+        let Vectors { half, work, .. } = &mut self.attempt.vectors;
         let exchange = &mut self.attempt.next.exchange;
         exchange.follow(&self.attempt.state.exchange);
         let own = |i: usize| work[i] + system.load[i] + new.link_of(i);
@@ -181,200 +148,5 @@ impl Driver {
             |i| half[i],
         );
         [supports, Resultant::of(&system, half)]
-    }
-}
-
-impl Attempt {
-    /// Weights of the contact forces at the start and of the step in their work: those of the energy identity, or of the
-    /// impulse where there is none.
-    pub(super) fn work_weights(&self) -> WorkWeights {
-        let Impulse { old, new, .. } = self.maps.first().contact_impulse;
-        let of_impulse = WorkWeights { old, new, lag: 0.0 };
-        self.identity.map_or(of_impulse, |identity| WorkWeights {
-            old: identity.old,
-            new: identity.new,
-            lag: identity.lag,
-        })
-    }
-
-    pub(super) fn motion_at(&self, end: End) -> &Motion {
-        match end {
-            End::Start => &self.state.motion,
-            End::Finish => &self.next.motion,
-        }
-    }
-
-    /// The factor of |a|²_M in the energy that one scheme balances; zero of several.
-    pub(super) fn inertia_of_identity(&self) -> f64 {
-        match self.maps.only() {
-            Some(_) => self.identity_of_ledger().inertia,
-            None => 0.0,
-        }
-    }
-
-    /// The identity by which the ledger counts: that of the scheme where all forces are linear, otherwise as far as it is inertia
-    /// alone. The forces of bodies that are not linear give the energy that the scheme balances no other form; all else that the scheme
-    /// takes is found from its works.
-    pub(super) fn identity_of_ledger(&self) -> EnergyIdentity {
-        if self.maps.only().is_none() {
-            // the energies of the zones are added, each with its factor
-            return EnergyIdentity {
-                inertia: 1.0,
-                ..EnergyIdentity::default()
-            };
-        }
-        let identity = self.identity.unwrap_or_default();
-        match self.system.is_nonlinear() {
-            false => identity,
-            true => {
-                let keeps = self.system.scheme.get().keeps_acceleration();
-                let own = EnergyIdentity {
-                    inertia: if keeps { identity.inertia } else { 0.0 },
-                    ..EnergyIdentity::default()
-                };
-                // the other terms are quadratic in K
-                match self.system.bodies.iter().all(Body::is_linear) {
-                    true => EnergyIdentity {
-                        lag: identity.lag,
-                        memory: identity.memory,
-                        ..own
-                    },
-                    false => own,
-                }
-            }
-        }
-    }
-}
-
-impl Parts {
-    /// Energies of a motion with this strain energy (J), those that the scheme balances beside included.
-    pub(super) fn energies_at(&mut self, attempt: &mut Attempt, end: End, strain: f64) -> Energies {
-        let system = Arc::clone(&attempt.system);
-        let identity = attempt.identity.unwrap_or_default();
-        let [memory, lagged] = self.own_energies(attempt, end, &identity, strain);
-        let motion = match end {
-            End::Start => &attempt.state.motion,
-            End::Finish => &attempt.next.motion,
-        };
-        let work = &mut attempt.vectors.work;
-        let with_acceleration = identity.inertia != 0.0;
-        Energies {
-            memory,
-            lagged,
-            ..energies(&system, motion, (strain, with_acceleration, None), work)
-        }
-    }
-
-    /// |m|²_K and U(u - lag v) - U(u) of a motion with this strain energy, J, as far as the identity asks for them; of linear bodies.
-    pub(super) fn own_energies(
-        &mut self,
-        attempt: &mut Attempt,
-        end: End,
-        identity: &EnergyIdentity,
-        strain: f64,
-    ) -> [f64; 2] {
-        let mut place = std::mem::take(&mut attempt.vectors.place);
-        let mut lagged = 0.0;
-        if identity.lag != 0.0 {
-            let motion = attempt.motion_at(end);
-            for (i, place) in place.iter_mut().enumerate() {
-                *place = motion.u[i] - identity.lag * motion.v[i];
-            }
-            attempt.vectors.place = place;
-            lagged = self.linear_forces(attempt) - strain;
-            place = std::mem::take(&mut attempt.vectors.place);
-        }
-        let mut memory = 0.0;
-        if identity.memory != 0.0 {
-            place.copy_from_slice(&attempt.motion_at(end).memory);
-            attempt.vectors.place = place;
-            // U is quadratic
-            memory = 2.0 * self.linear_forces(attempt);
-            place = std::mem::take(&mut attempt.vectors.place);
-        }
-        attempt.vectors.place = place;
-        [memory, lagged]
-    }
-
-    /// Energies of the state, with what the scheme of the step balances.
-    pub(super) fn energies_at_the_start(&mut self, attempt: &mut Attempt, strain: f64) -> Energies {
-        self.energies_at(attempt, End::Start, strain)
-    }
-
-    /// |Δm|²_K of the step, as far as the identity asks for it.
-    pub(super) fn filtered(&mut self, attempt: &mut Attempt, identity: &EnergyIdentity) -> f64 {
-        if identity.filtered == 0.0 {
-            return 0.0;
-        }
-        let [old, new] = [&attempt.state, &attempt.next].map(|state| &state.motion.memory);
-        difference(old, new, &mut attempt.vectors.place);
-        2.0 * self.linear_forces(attempt)
-    }
-}
-
-/// What changed from the old to the new motion, as far as the identity asks for it. Leaves Δu in `travel`.
-fn squares(
-    system: &System,
-    identity: &EnergyIdentity,
-    (old, new): (&Motion, &Motion),
-    (travel, change, work): (&mut [f64], &mut [f64], &mut [f64]),
-) -> Squares {
-    let mut squares = Squares::default();
-    difference(&old.u, &new.u, travel);
-    if identity.velocity != 0.0 {
-        difference(&old.v, &new.v, change);
-        system.mass.multiply(change, work);
-        squares.velocity = dot(change, work);
-    }
-    if identity.acceleration != 0.0 || identity.mixed != 0.0 {
-        difference(&old.a, &new.a, change);
-        system.mass.multiply(change, work);
-        squares.acceleration = dot(change, work);
-        squares.mixed = dot(travel, work);
-    }
-    if identity.contact != 0.0 {
-        difference(&old.a, &new.a, change);
-        squares.contact = dot(change, &new.contact_force);
-    }
-    if identity.displacement != 0.0 {
-        // K is linear and symmetric: |Δu|²_K = Δu · Δf
-        squares.displacement = dot(travel, &new.internal_force) - dot(travel, &old.internal_force);
-    }
-    squares
-}
-
-/// new - old.
-fn difference(old: &[f64], new: &[f64], change: &mut [f64]) {
-    for i in 0..change.len() {
-        change[i] = new[i] - old[i];
-    }
-}
-
-/// Energies and momentum of a motion with this strain energy (J): |a|²_M where it is asked for, angular momentum about
-/// [`System::about`] of the nodes at these displacements, or in the reference configuration.
-pub(super) fn energies(
-    system: &System,
-    motion: &Motion,
-    (strain, with_acceleration, u): (f64, bool, Option<&[f64]>),
-    work: &mut [f64],
-) -> Energies {
-    system.mass.multiply(&motion.v, work);
-    let kinetic = 0.5 * dot(&motion.v, work);
-    let momentum = match u {
-        Some(u) => Resultant::at(system, (&motion.frames, &[u]), work),
-        None => Resultant::of(system, work),
-    };
-    let mut acceleration = 0.0;
-    if with_acceleration {
-        system.mass.multiply(&motion.a, work);
-        acceleration = dot(&motion.a, work);
-    }
-    Energies {
-        kinetic,
-        strain,
-        acceleration,
-        memory: 0.0,
-        lagged: 0.0,
-        momentum,
     }
 }

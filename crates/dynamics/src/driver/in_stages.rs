@@ -3,10 +3,8 @@
 //! Contact forces of a stage are reported with its end. An attempt that is dropped leaves the state with which the step began.
 
 use super::Driver;
-use super::owners::Attempt;
 use crate::error::Error;
 use crate::report::Notices;
-use crate::scheme::Durations;
 
 impl Driver {
     /// Computes the end of a step of `dt` from the state, of an explicit scheme before one of the size `next` (both s), in all stages of the
@@ -69,27 +67,6 @@ impl Driver {
             self.report.samples.retain(|part| part.time <= start);
             self.attempt.state = *origin;
             self.leave_direct();
-        }
-    }
-}
-
-impl Attempt {
-    /// Stages of the step from the present state: a static step has one.
-    pub(super) fn stages(&self) -> usize {
-        match self.is_static() {
-            true => 1,
-            false => self.stage.count(),
-        }
-    }
-
-    /// How long the force of a contact gives its impulse; nothing in a static step, in which forces give none.
-    pub(super) fn durations(&self, contact: usize) -> Durations {
-        if self.maps.is_static() {
-            return Durations::default();
-        }
-        match self.stage.is_one_of_several() {
-            true => Durations::of_stage(self.system.scheme.get(), self.stage.number, self.stage.of),
-            false => Durations::of_step(self.dt, &self.map_of(contact).contact_impulse),
         }
     }
 }

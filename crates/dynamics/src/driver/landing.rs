@@ -1,7 +1,6 @@
 //! When a driver would end its step: where points in flight are at their lead ([`crate::landing`]).
 
 use super::Driver;
-use super::owners::{Attempt, Contacts, Stages};
 use crate::landing::{arrival, flies, lead};
 use crate::system::{Adaptive, Maps};
 
@@ -46,18 +45,5 @@ impl Driver {
             }
         }
         arrivals
-    }
-}
-
-impl Stages {
-    /// Gap of a point at the end of the step without its forces, m.
-    pub(super) fn free_gap(&self, contacts: &Contacts, attempt: &Attempt, point: usize) -> f64 {
-        if let Some(gap) = self.predictor.gap(point) {
-            return gap;
-        }
-        match contacts.candidates.binary_search(&(point as u32)) {
-            Ok(k) => contacts.free_gaps[k],
-            Err(_) => attempt.next.interface.gap[point],
-        }
     }
 }

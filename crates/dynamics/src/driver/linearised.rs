@@ -9,7 +9,7 @@ use carom_bodies::{Body, Placement};
 use serde::{Deserialize, Serialize};
 
 use super::Driver;
-use super::owners::Attempt;
+use super::attempt::Attempt;
 use crate::error::Error;
 use crate::operator::{Operators, factored, single};
 use crate::scheme::{Scheme, Theta};
@@ -334,6 +334,38 @@ impl Linearised<'_> {
     }
 }
 
+/// Where a zone was linearised; empty of a linear zone.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// Displacement, m.
+    pub u: Vec<f64>,
+    /// Histories of its materials.
+    pub history: Vec<f64>,
+    /// Rotations of its nodes.
+    pub frames: Vec<Rotation>,
+}
+
+impl Origin {
+    /// Whether it is of the same zone as another one, in the length of each array.
+    pub fn is_like(&self, other: &Origin) -> bool {
+        let lengths = |one: &Origin| [one.u.len(), one.history.len(), one.frames.len()];
+        lengths(self) == lengths(other)
+    }
+
+    /// The present state of a zone.
+    pub fn of(driver: &Driver) -> Origin {
+        let mut bodies = driver.system().bodies.iter();
+        match bodies.all(|body| body.is_linear()) {
+            true => Origin::default(),
+            false => Origin {
+                u: driver.state().motion.u.clone(),
+                history: driver.state().motion.history.clone(),
+                frames: driver.state().motion.frames.clone(),
+            },
+        }
+    }
+}
+
 impl Attempt {
     /// The map of the linearised zone: where forces belong to the way of the step they are those of its middle.
     pub(super) fn linear_map(&self) -> StepMap {
@@ -389,37 +421,5 @@ impl Attempt {
             body.add_tangent(&at, [1.0, 0.0], &mut stiffness)?;
         }
         Ok(stiffness)
-    }
-}
-
-/// Where a zone was linearised; empty of a linear zone.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Origin {
-    /// Displacement, m.
-    pub u: Vec<f64>,
-    /// Histories of its materials.
-    pub history: Vec<f64>,
-    /// Rotations of its nodes.
-    pub frames: Vec<Rotation>,
-}
-
-impl Origin {
-    /// Whether it is of the same zone as another one, in the length of each array.
-    pub fn is_like(&self, other: &Origin) -> bool {
-        let lengths = |one: &Origin| [one.u.len(), one.history.len(), one.frames.len()];
-        lengths(self) == lengths(other)
-    }
-
-    /// The present state of a zone.
-    pub fn of(driver: &Driver) -> Origin {
-        let mut bodies = driver.system().bodies.iter();
-        match bodies.all(|body| body.is_linear()) {
-            true => Origin::default(),
-            false => Origin {
-                u: driver.state().motion.u.clone(),
-                history: driver.state().motion.history.clone(),
-                frames: driver.state().motion.frames.clone(),
-            },
-        }
     }
 }

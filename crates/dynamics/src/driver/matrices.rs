@@ -3,18 +3,11 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use carom_algebra::reduce::norm_squared;
-use carom_contact::Sliding;
 
 use super::Driver;
-use super::effective::{At, Turning};
-use super::floating::{GROWTH as HEAVIER, LARGEST};
-use super::owners::{Attempt, Contacts, Parts};
+use super::parts::effective::{At, Turning};
+use super::parts::floating::{GROWTH as HEAVIER, LARGEST};
 use crate::error::Error;
-use carom_system::ContactPair;
-
-/// Motion over the size of the model by which loads say what stiffness a model has.
-const DEFLECTION: f64 = 1e-3;
 
 impl Driver {
     /// Makes the effective matrix at x. Where it is not positive definite with the turning contact forces, it is made
@@ -79,64 +72,5 @@ impl Driver {
         self.parts.floating.weight = at.proximal.1;
         self.attempt.phases.factorisation += begin.elapsed();
         made
-    }
-}
-
-impl Parts {
-    /// Takes the matrices of the attempt: those of linear parts are ready with it.
-    pub(super) fn take_matrices(&mut self, attempt: &mut Attempt) -> Result<(), Error> {
-        if self.effective.stands(&attempt.maps) {
-            return Ok(());
-        }
-        let begin = Instant::now();
-        let system = Arc::clone(&attempt.system);
-        let iterated = (0..system.parts.len()).map(|part| self.is_iterated(attempt, part));
-        let iterated = iterated.collect();
-        let between = attempt.between();
-        let taken = self
-            .effective
-            .take(&system, &attempt.maps, iterated, between);
-        attempt.phases.factorisation += begin.elapsed();
-        taken
-    }
-
-    /// Whether the matrix of a part changes within a step.
-    pub(super) fn is_iterated(&self, attempt: &Attempt, part: usize) -> bool {
-        let system = &*attempt.system;
-        if attempt.maps.of(system.parts[part].start).force.x == 0.0 {
-            return false;
-        }
-        let mut bodies = (0..system.bodies.len()).filter(|&k| system.part_of_body[k] == part);
-        let own = &system.parts[part];
-        let mut pieces = self.floating.pieces.iter();
-        let floats = self.floats(attempt) && pieces.any(|piece| own.contains(&piece.unknowns[0]));
-        let changes = |k: usize| !system.bodies[k].is_linear() || system.nonlinear.has_follower(k);
-        floats || bodies.any(changes)
-    }
-}
-
-impl Contacts {
-    /// Whether the effective matrix leaves out much of the derivative of the forces: of those between two states what is not
-    /// symmetric, of contacts whose points slide how rows and weights move with them.
-    pub(super) fn leaves_out(&self, attempt: &Attempt) -> bool {
-        let mut contacts = attempt.system.contacts.iter().enumerate();
-        let slides = |(number, contact): (usize, &ContactPair)| {
-            contact.sliding == Sliding::Finite && self.turning(number) != 0.0
-        };
-        attempt.between() || contacts.any(slides)
-    }
-}
-
-impl Attempt {
-    /// A stiffness of the size of what the model has where it has none that is known, N/m: the loads would move it by a thousandth of itself.
-    pub(super) fn stiffness_by_load(&self) -> f64 {
-        let (load, size) = (
-            norm_squared(&self.vectors.load).sqrt(),
-            self.system.mesh.size(),
-        );
-        match load > 0.0 && size > 0.0 {
-            true => load / (DEFLECTION * size),
-            false => 1.0,
-        }
     }
 }

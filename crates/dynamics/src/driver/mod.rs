@@ -12,110 +12,69 @@
 //! What the driver holds besides the state is a function of the system and the state, or scratch: a run goes on from a saved state
 //! with the same bits.
 
-mod active;
 mod ahead;
 mod apart;
 mod approach;
-mod attempt;
+pub(crate) mod attempt;
+mod attempts;
 mod balance;
 mod balance_works;
-mod begun_solve;
-mod bolts;
+pub(crate) mod balances;
 mod candidates;
-mod carried;
-mod closing;
-mod closings;
-mod compressed;
 mod contact_forces;
-mod contacts;
-mod deletion;
-mod describe;
+pub(crate) mod contacts;
 mod direct;
 mod direct_balance;
 mod direct_hold;
-mod direct_links;
-mod effective;
-mod factored_step;
-mod far;
-mod floating;
-mod followed;
+pub(crate) mod explicit;
 mod force_jump;
-mod forces;
-mod held;
 mod identity;
-mod impulse;
 mod in_stages;
-mod joined;
 mod landing;
-mod leapfrog;
-mod linear_part;
 pub mod linearised;
 pub mod linked;
-mod linking;
-mod links;
+pub(crate) mod links;
 pub(crate) mod loads;
 mod matrices;
-mod mean_forces;
-mod mixing;
-mod near;
+mod multipliers;
 mod obstacles;
-mod owners;
 pub mod paired;
-mod pairing_modes;
-mod part_matrix;
-mod passage;
-mod passed;
-mod pieces;
-mod predictor;
+pub(crate) mod parts;
 mod projection;
 mod ranked;
-mod rebound;
+pub(crate) mod ranks;
 mod rebounding;
 pub(crate) mod record;
 mod refine;
-mod refined;
-mod renewal;
-mod reported;
 mod residual;
 mod restoring;
-mod rigid;
-mod rounding;
-mod scheme_stage;
-mod scratch;
-mod shared_looks;
 mod solve;
-mod span;
-mod springs;
 mod stable;
+pub(crate) mod stages;
 mod start;
 mod step;
-mod supports;
-mod tangent_solver;
-pub(crate) mod tangents;
-mod turned;
 mod unfit;
-mod weak;
 
 use std::sync::Arc;
 
 use carom_algebra::Interrupt;
-use carom_contact::law::{Displacement, Level};
-use carom_contact::{Contact, Law};
 
+pub use self::contacts::tangents::Rubbing;
+pub use self::ranked::RankShare;
+pub use self::unfit::why_not_on_ranks;
 use crate::costs::Costs;
-use crate::error::Error;
 use crate::report::StepReport;
 use crate::state::State;
-use crate::step_map::StepMap;
 use crate::system::System;
 use crate::watch::Watch;
-use owners::{Attempt, Balances, Contacts, Explicit, Links, Parts, RankWork, SizeOfMaps, Stages};
-pub use ranked::RankShare;
-use scratch::Vectors;
-pub use unfit::why_not_on_ranks;
-
-/// What a law in the rate is in a static stage.
-static AT_REST: Law = Law::Displacement(Displacement { projection: false });
+use attempt::Attempt;
+use balances::Balances;
+use contacts::Contacts;
+use explicit::Explicit;
+use links::Links;
+use parts::Parts;
+use ranks::RankWork;
+use stages::Stages;
 
 /// Takes steps.
 pub struct Driver {
@@ -214,124 +173,4 @@ impl Driver {
             .chain(group_solvers)
             .for_each(|solver| solver.heed(interrupt));
     }
-}
-
-impl Attempt {
-    /// What an attempt has come to: nothing, where somebody has asked for its end meanwhile. Part of what loops found may be missing then.
-    pub(super) fn unless_interrupted(&self, outcome: Result<(), Error>) -> Result<(), Error> {
-        match self.interrupt.is_set() {
-            true => Err(Error::Interrupted),
-            false => outcome,
-        }
-    }
-
-    /// The law of a contact in the attempt under way. In a static stage nothing has a rate: a law in the rate holds in the
-    /// gap there, as the displacement law.
-    pub(super) fn law<'a>(&self, contact: &'a Contact) -> &'a Law {
-        match contact.law.get().level() {
-            Level::Rate if self.maps.is_static() => &AT_REST,
-            _ => &contact.law,
-        }
-    }
-
-    /// The map of the secondary side of a contact.
-    pub(super) fn map_of(&self, contact: usize) -> &StepMap {
-        &self.maps.all()[self.system.zone_of(contact)]
-    }
-
-    /// Whether internal forces and contacts belong to the way of the step.
-    pub(super) fn between(&self) -> bool {
-        !self.maps.is_static() && self.system.scheme.get().is_between()
-    }
-
-    /// Contact, place in it and mesh node of a contact point.
-    pub(super) fn name(&self, point: usize) -> String {
-        let (contact, place) = self.system.point(point);
-        let node = self.system.mesh_node[contact.points[place].node() as usize];
-        format!("contact `{}`, point {place}, node {node}", contact.name)
-    }
-
-    /// Whether the step from the present state is static.
-    pub(super) fn is_static(&self) -> bool {
-        let preload = self.system.nonlinear.preload;
-        preload.is_some_and(|preload| self.state.step < preload.steps)
-    }
-
-    /// Whether supports jump in the iteration.
-    pub(super) fn jumps(&self) -> bool {
-        self.vectors.jumps
-    }
-
-    pub(super) fn renew_maps(&mut self, dt: f64, next: f64) {
-        if self.is_static() {
-            self.maps.rest();
-            self.identity = None;
-            return;
-        }
-        match self.stage.is_one_of_several() {
-            true => self
-                .maps
-                .stage(&self.system.scheme, self.stage.number, self.stage.of),
-            false => self.maps.resize(&self.system.schemes, (dt, next)),
-        }
-        // zones of different schemes are balanced by works
-        self.identity = match &self.system.schemes[..] {
-            [scheme] => scheme.get().energy_identity(dt),
-            _ => None,
-        };
-    }
-
-    /// Factor of Nᵀ P in the contact forces that the ledger counts.
-    pub(super) fn contact_factor(&self) -> f64 {
-        match self.vectors.push.is_empty() {
-            true => self.maps.contact(),
-            false => 1.0,
-        }
-    }
-}
-
-impl Parts {
-    /// Whether pieces float in the attempt under way.
-    pub(super) fn floats(&self, attempt: &Attempt) -> bool {
-        attempt.maps.is_static() && !self.floating.pieces.is_empty()
-    }
-}
-
-impl Contacts {
-    /// How long after the start of the step a contact is paired, s.
-    pub(super) fn paired_after(&self, attempt: &Attempt, number: usize) -> f64 {
-        let law = attempt.law(&attempt.system.contacts[number]);
-        match law.get().level() {
-            _ if attempt.between() => 0.5 * attempt.dt,
-            Level::Rate => self.captured(attempt, number) * attempt.dt,
-            Level::Gap => attempt.dt,
-            Level::GapAndRate => attempt.map_of(number).instant(attempt.dt),
-        }
-    }
-
-    /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
-    pub(super) fn size(&mut self, attempt: &mut Attempt, dt: f64, next: f64) {
-        attempt.dt = dt;
-        let sized = Some(SizeOfMaps {
-            dt,
-            next,
-            is_static: attempt.is_static(),
-            stage: attempt.stage.key(),
-        });
-        if attempt.sized == sized {
-            return;
-        }
-        attempt.sized = sized;
-        attempt.renew_maps(dt, next);
-        self.renew_pairing_modes(attempt);
-    }
-}
-
-/// A configuration of the step.
-#[derive(Clone, Copy)]
-enum Configuration {
-    /// The scratch configuration and velocity.
-    Place,
-    /// The end of the step.
-    Next,
 }

@@ -8,20 +8,15 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use carom_bodies::{Distortion, Share};
-use carom_contact::Search;
 use carom_ranks::Ranks;
 
 use super::Driver;
-use super::far::Far;
-use super::leapfrog::Direct;
-use super::owners::{Attempt, Contacts, Parts};
-use crate::contact_sums::ContactSums;
+use super::explicit::leapfrog::Direct;
 use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
-use crate::shared::{Begin, InReach, Own, OwnElements, Part, Shared, SharedNodes, Told, receive};
+use crate::shared::{Begin, InReach, Own, OwnElements, Shared, SharedNodes, Told, receive};
 use crate::state::State;
 use crate::system::{Model, System};
-use crate::update::Sums;
 use crate::watch::{OfBody, is_due};
 
 /// What one of several ranks has of a run, and sends to others.
@@ -337,90 +332,6 @@ impl Driver {
             }
         }
         self.ranks.shared = Some(shared);
-    }
-}
-
-impl Contacts {
-    /// Takes the contact points that this rank has now.
-    pub(super) fn take_homes(
-        &mut self,
-        attempt: &Attempt,
-        shared: &mut Shared,
-        direct: &mut Direct,
-    ) {
-        let system = Arc::clone(&attempt.system);
-        let own = shared.own_points(&system);
-        self.narrowed.resize(system.contacts.len(), None);
-        for (number, own) in own.iter().enumerate() {
-            if own == self.active.own_of(number) {
-                continue;
-            }
-            self.search[number] = Search::default();
-            if let Own::Some(Part {
-                faces: Some(faces), ..
-            }) = own
-            {
-                let contact = &system.contacts[number];
-                self.narrowed[number] = Some(contact.with_some_faces(faces));
-            }
-        }
-        self.far = Far::of(&system, |contact| own[contact] == Own::All);
-        self.active.keep_own(&system, own);
-        direct.blocks = shared.blocks(&system);
-        direct.sums = vec![Sums::default(); direct.blocks.len()];
-        self.forget_step(direct);
-    }
-
-    /// Leaves out gaps beyond what counts in a step with the motion of all nodes, and tells what is recorded of contacts of which no point was
-    /// looked at.
-    pub(super) fn know_gaps(&self, attempt: &mut Attempt, contacts: &mut [ContactSums]) {
-        let interface = &mut attempt.next.interface;
-        for (k, of) in contacts.iter_mut().enumerate() {
-            let reach = attempt.system.contacts[k].reach(of.motion, self.active.reaches[k]);
-            if of.report.gap > reach {
-                of.report.gap = f64::INFINITY;
-            }
-            for point in self.active.within(attempt.system.points_of(k)) {
-                if interface.gap[point] > reach {
-                    (interface.gap[point], interface.rate[point]) = (f64::INFINITY, 0.0);
-                }
-            }
-            if !of.near {
-                of.passing = attempt.state.records.contacts[k].passing;
-            }
-        }
-    }
-}
-
-impl Parts {
-    /// Internal forces and histories of the end, at the nodes of this rank.
-    pub(super) fn forces_on_ranks(
-        &mut self,
-        attempt: &mut Attempt,
-        shared: &mut Shared,
-        direct: &Direct,
-    ) -> Result<(), Error> {
-        let begin = Instant::now();
-        self.force_sweeps += 1;
-        let dim = attempt.system.dim;
-        for block in &direct.blocks {
-            block
-                .nodes
-                .clear(dim, &mut attempt.next.motion.internal_force);
-        }
-        let motions = (&attempt.state.motion, &mut attempt.next.motion, attempt.dt);
-        let stored = shared.forces(&attempt.system, motions);
-        attempt.phases.forces += begin.elapsed();
-        self.stored = stored?;
-        Ok(())
-    }
-}
-
-impl Attempt {
-    /// Whether an impact of a contact begins or ends in the step.
-    pub(super) fn impacts_change(&self, contacts: &[ContactSums]) -> bool {
-        let mut records = self.state.records.contacts.iter().zip(contacts);
-        records.any(|(record, of)| record.changes(of.report.closed > 0))
     }
 }
 

@@ -5,17 +5,13 @@ use std::sync::Arc;
 use carom_contact::Rows;
 
 use super::Driver;
-use super::owners::{Attempt, Balances, Contacts};
-use crate::assembly_energy::{PartMotion, balance_taken};
+use super::contacts::record::total;
 use crate::contact_sums::ContactSums;
 use crate::exchange::sum;
 use crate::moment::moment;
 use crate::records::Step;
 use crate::report::ContactReport;
-use crate::small::Largest;
 use crate::state::{InterfaceState, State};
-use crate::step_map::Impulse;
-use crate::system::{Motion, System};
 
 impl Driver {
     /// Records of the contacts, and what they give to each part.
@@ -227,125 +223,6 @@ impl Driver {
     }
 }
 
-impl Contacts {
-    /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
-    pub(super) fn passing(&self, attempt: &Attempt, number: usize) -> Largest {
-        let system = &*attempt.system;
-        let mut passing = attempt.state.records.contacts[number].passing;
-        let contact = &system.contacts[number];
-        if !contact.may_be_passed() {
-            return passing;
-        }
-        let (rows, interface) = (&self.pairing.rows, &attempt.next.interface);
-        let [old, new] = [&attempt.state.motion.u, &attempt.next.motion.u];
-        for point in self.active.within(system.points_of(number)) {
-            let end = interface.gap[point];
-            let start = end - (rows.product(point, new) - rows.product(point, old));
-            let depth = -end.min(start);
-            if depth > passing.value {
-                let point = &contact.points[point - system.contacts[number].range.start];
-                let node = system.mesh_node[point.node() as usize];
-                passing.take(depth, node, attempt.state.time + attempt.dt);
-            }
-        }
-        passing
-    }
-
-    /// Work of the normal forces of one contact on the motion of the step, J.
-    pub(super) fn contact_work(&self, attempt: &Attempt, contact: usize) -> f64 {
-        let rows = &self.pairing.rows;
-        let weights = attempt.weights_of_work(contact);
-        let (old, new) = (&attempt.state, &attempt.next);
-        let of_point = |point: usize| {
-            let force = weights.old * old.interface.carried[point]
-                + weights.new * new.interface.force[point];
-            if force == 0.0 {
-                return 0.0;
-            }
-            let place = |state: &State| {
-                let u = rows.product(point, &state.motion.u);
-                match weights.lag == 0.0 {
-                    true => u,
-                    false => u - weights.lag * rows.product(point, &state.motion.v),
-                }
-            };
-            force * (place(new) - place(old) + attempt.dt * rows.rate(point))
-        };
-        let points = attempt.system.points_of(contact);
-        self.active.within(points).map(of_point).sum()
-    }
-}
-
-impl Attempt {
-    pub(super) fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
-        match self.system.is_nonlinear() {
-            false => self.work_weights(),
-            true => {
-                let impulse = self.contact_impulse(contact);
-                super::identity::WorkWeights {
-                    old: match self.stage.is_one_of_several() {
-                        true => impulse.of_start(),
-                        false => impulse.old,
-                    },
-                    new: impulse.new,
-                    lag: 0.0,
-                }
-            }
-        }
-    }
-
-    /// How the forces of a contact change the momentum; of a static step, which changes none, how they count in its works, as all forces
-    /// do there.
-    pub(super) fn contact_impulse(&self, contact: usize) -> Impulse {
-        match self.maps.is_static() {
-            true => {
-                let [old, new] = self.weights_of(self.system.zone_of(contact));
-                Impulse::weights(old, new)
-            }
-            false => self.map_of(contact).contact_impulse,
-        }
-    }
-}
-
-/// A connected part at the end of a step from displacements and internal forces to a motion. `momentum`: M v of it, by unknown.
-pub(super) fn motion_of(
-    system: &System,
-    part: usize,
-    ([u, force], new): ([&Vec<f64>; 2], &Motion),
-    momentum: &[f64],
-) -> PartMotion {
-    let range = &system.parts[part];
-    let mut motion = PartMotion {
-        momentum: sum(system, range, momentum),
-        ..PartMotion::default()
-    };
-    for i in range.clone() {
-        motion.kinetic += 0.5 * momentum[i] * new.v[i];
-        motion.taken += 0.5 * (force[i] + new.internal_force[i]) * (new.u[i] - u[i]);
-    }
-    motion
-}
-
-/// Sum of a normal force or impulse over points of a contact, and its resultant on the secondary body.
-pub(crate) fn total(
-    points: impl Iterator<Item = usize>,
-    rows: &Rows,
-    of_point: impl Fn(usize) -> f64,
-) -> (f64, [f64; 3]) {
-    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
-    for point in points {
-        let value = of_point(point);
-        if value == 0.0 {
-            continue;
-        }
-        sum += value;
-        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
-            *sum += value * n;
-        }
-    }
-    (sum, resultant)
-}
-
 /// What a contact did in a step of `dt` (s): its points, those left out being open before and after it.
 pub fn contact_report(
     points: impl Iterator<Item = usize>,
@@ -373,62 +250,4 @@ pub fn contact_report(
     }
     report.normal = report.resultant;
     report
-}
-
-impl Balances {
-    /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
-    pub(super) fn balance_assemblies(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
-        self.work_of_obstacles(contacts, attempt);
-        let inertia = attempt.inertia_of_identity();
-        let system = Arc::clone(&attempt.system);
-        let system = &*system;
-        let (old, new) = (&attempt.state.motion, &attempt.next.motion);
-        let (vectors, given) = (&mut attempt.vectors, &self.works.given);
-        if inertia != 0.0 {
-            system.mass.multiply(&new.a, &mut vectors.half);
-        }
-        let has_damping = system.has_damping();
-        let part = |number: usize| {
-            let sum = |of: &dyn Fn(usize) -> f64| system.parts[number].clone().map(of).sum::<f64>();
-            let mut motion = motion_of(
-                system,
-                number,
-                ([&old.u, &old.internal_force], new),
-                &vectors.work,
-            );
-            if has_damping {
-                motion.damped = sum(&|i| vectors.damping[i] * (new.u[i] - old.u[i]));
-            }
-            if inertia != 0.0 {
-                motion.of_scheme = inertia * sum(&|i| vectors.half[i] * new.a[i]);
-            }
-            motion.given = given.get(number).copied().unwrap_or(0.0);
-            motion
-        };
-        let motions: &mut Vec<PartMotion> = &mut self.works.motions;
-        motions.clear();
-        motions.extend((0..system.parts.len()).map(part));
-        let motions = std::mem::take(motions);
-        self.add_to_assemblies(attempt, motions);
-    }
-
-    /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part.
-    pub(super) fn add_to_assemblies(
-        &mut self,
-        attempt: &mut Attempt,
-        mut motions: Vec<PartMotion>,
-    ) {
-        let internal = |state: &State| state.ledger.balance.internal();
-        if attempt.system.is_nonlinear() {
-            balance_taken(
-                &mut motions,
-                internal(&attempt.next) - internal(&attempt.state),
-            );
-        }
-        let assemblies = &mut attempt.next.assemblies;
-        assemblies.follow(&attempt.state.assemblies);
-        let records = &attempt.next.records.contacts[..];
-        assemblies.add(&attempt.system, &motions, (records, &self.works.obstacles));
-        self.works.motions = motions;
-    }
 }

@@ -6,7 +6,7 @@
 use carom_contact::law::Status;
 
 use super::Driver;
-use super::scratch::Projected;
+use super::stages::Projected;
 use crate::step_terms::Jump;
 
 impl Driver {

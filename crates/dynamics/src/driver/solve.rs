@@ -2,23 +2,13 @@
 //!
 //! Where all is linear in the unknown, one iteration is all: free motion, interface problem, correction.
 
-use std::ops::Range;
-use std::sync::Arc;
 
-use carom_algebra::rotation::Rotation;
-use carom_algebra::tensor::Vec3;
-use carom_algebra::unknowns::Kind;
 use carom_contact::Search;
 
 use super::Driver;
-use super::mixing::{LARGEST, LARGEST_OF_FLOATING};
-use super::owners::{Attempt, Contacts, Parts};
-use super::pieces::Pieces;
-use super::refine::WITHIN;
+use super::parts::solve::WITHIN;
 use super::residual::Standing;
-use super::rigid::Rigid;
 use crate::error::Error;
-use crate::step_map::StepMap;
 
 /// Residual before and after an iteration beyond which the motion of the iteration is halved.
 const GROWTH: f64 = 4.0;
@@ -28,12 +18,6 @@ const SHORTENINGS: u32 = 5;
 
 /// Imbalance over that one iteration ago up to which the iteration was a gain.
 const GAIN: f64 = 0.5;
-
-/// Iterations that a fresh factor is counted to need.
-const FRESH: f64 = 2.0;
-
-/// Cost of a new tangent beside its factorisation, in iterations with the old one.
-const TANGENT: f64 = 3.0;
 
 /// Largest number of iterations of a step in which parts move on along motions that nothing holds, over that of others.
 const MOVES: usize = 10;
@@ -266,208 +250,6 @@ impl Driver {
             }
             Some(outcome) => outcome,
             None => Err(self.contacts.no_equilibrium(&self.parts, &self.attempt, 0)),
-        }
-    }
-}
-
-impl Parts {
-    pub(super) fn leaves_iterations(&mut self, attempt: &Attempt) -> bool {
-        let between = attempt.between();
-        let (system, maps) = (&attempt.system, &attempt.maps);
-        self.effective.leave_iterations(system, maps, between)
-    }
-
-    /// Whether an iteration whose error is that of the bodies alone needs their derivative anew: with it residuals go on as r₊ = c r²
-    /// with the c of the last iteration, else at its rate. A tangent with its factor was measured to cost about what the
-    /// passes that it saves, with 888 unknowns and with 2304 (decision 019).
-    pub(super) fn wants_tangent(&self, attempt: &Attempt) -> bool {
-        let [.., before, now] = self.residuals[..] else {
-            return false;
-        };
-        let ratio = now / before;
-        if ratio.is_nan() || ratio >= 0.5 {
-            return true;
-        }
-        let tolerance = attempt.system.nonlinear.iteration.tolerance;
-        let kept = (tolerance / now).ln() / ratio.ln();
-        let (mut left, mut newer) = (now, 0.0);
-        while left > tolerance {
-            left *= ratio * (left / before);
-            newer += 1.0;
-        }
-        let renewed = kept > newer;
-        tracing::debug!(
-            "step {}, iteration {}: residual {now:e}, {ratio} times the one before; the factor is {}: {kept:.1} iterations \
-             with it against {newer} with a new one",
-            attempt.state.step + 1,
-            self.residuals.len() - 1,
-            if renewed { "renewed" } else { "kept" },
-        );
-        renewed
-    }
-}
-
-impl Attempt {
-    /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
-    /// the first iteration, so that the inside of the body goes along.
-    pub(super) fn predict(&mut self) {
-        let system = Arc::clone(&self.system);
-        let motion = &self.state.motion;
-        let vectors = &mut self.vectors;
-        if self.maps.is_static() {
-            vectors.x.fill(0.0);
-        } else {
-            self.maps.known(|map| map.inertia, motion, &mut vectors.x);
-            for (span, map) in self.maps.spans() {
-                for x in &mut vectors.x[span] {
-                    *x *= -1.0 / map.inertia.x;
-                }
-            }
-        }
-        vectors.jump.fill(0.0);
-        vectors.jumps = false;
-        if self.maps.all().iter().all(|map| map.displacement.x == 0.0) {
-            return;
-        }
-        let place = &mut vectors.place;
-        self.maps.known(|map| map.displacement, motion, place);
-        vectors.work.fill(0.0);
-        let time = [self.state.time, self.state.time + self.dt];
-        system.nonlinear.prescribe(time, &mut vectors.work);
-        let maps = &self.maps;
-        let held = |(span, map): (Range<usize>, &StepMap)| {
-            let x = map.displacement.x;
-            let fixed = &system.fixed;
-            let held = span.filter(move |&i| x != 0.0 && fixed[i]);
-            held.map(move |i| (i, x))
-        };
-        for (i, x) in maps.spans().flat_map(held) {
-            vectors.x[i] = (motion.u[i] - vectors.place[i]) / x;
-            vectors.jump[i] = (vectors.work[i] - motion.u[i]) / x;
-            vectors.jumps |= vectors.jump[i] != 0.0;
-        }
-    }
-
-    /// Leaves this part of the jump of the supports to the iterations to come.
-    pub(super) fn shorten_jump(&mut self, rest: f64) {
-        let vectors = &mut self.vectors;
-        for jump in &mut vectors.jump {
-            *jump *= rest;
-        }
-        vectors.jumps = vectors.jump.iter().any(|jump| *jump != 0.0);
-    }
-
-    /// Begins with the rigid motion of each part that is nearest to its velocity. The motion of no acceleration may turn elements
-    /// inside out where velocities alternate from step to step, as a trapezoidal rule leaves them in stiff modes: the
-    /// displacements of these modes stay what they are.
-    pub(super) fn predict_rigidly(&mut self) {
-        let system = Arc::clone(&self.system);
-        let motion = &self.state.motion;
-        // explicit zones have their place already
-        let factor = |i: usize| self.maps.of(i).displacement.x;
-        let parts = Pieces::of_parts(&system);
-        let rigid = Rigid::new(&system, &parts, (&motion.u, None));
-        let mut c = rigid.nearest(&motion.v);
-        c.iter_mut().for_each(|c| *c *= self.dt);
-        let vectors = &mut self.vectors;
-        let place = &mut vectors.place;
-        self.maps.known(|map| map.displacement, motion, place);
-        let moved = |i: usize| !system.fixed[i] && factor(i) != 0.0;
-        for i in (0..motion.u.len()).filter(|&i| moved(i)) {
-            vectors.x[i] = (motion.u[i] - vectors.place[i]) / factor(i);
-        }
-        for (i, u) in rigid.motion(&c).chain(rigid.arc(&c)) {
-            if moved(i) {
-                vectors.x[i] += u / factor(i);
-            }
-        }
-        for (node, angle) in rigid.turns(&c).filter(|(node, _)| system.bends_at(*node)) {
-            let frame = system.unknowns.frame(node);
-            let start = frame.map_or(Rotation::IDENTITY, |frame| motion.frames[frame]);
-            let turn = start.matrix().tr_mul(&Vec3::from(angle));
-            for i in system.unknowns.rotations_of(node).filter(|&i| moved(i)) {
-                if let Kind::Rotation(axis) = system.unknowns.kind(i) {
-                    vectors.x[i] += turn[axis] / factor(i);
-                }
-            }
-        }
-    }
-}
-
-impl Contacts {
-    /// Whether this iteration needs a new factor.
-    pub(super) fn wants_factor(&self, parts: &mut Parts, attempt: &Attempt, pass: usize) -> bool {
-        if !parts.effective.iterates() {
-            return false;
-        }
-        if self.refines(parts, attempt) && parts.pace.age > 0 {
-            return parts.wants_tangent(attempt);
-        }
-        let (Some(&now), Some(price)) = (parts.residuals.last(), parts.effective.price()) else {
-            return true;
-        };
-        let Some(ratio) = self.contraction(parts, attempt) else {
-            return parts.pace.age == 0;
-        };
-        let least = if self.alternates(parts, attempt) {
-            1.0
-        } else {
-            0.5
-        };
-        if ratio.is_nan() || ratio >= least {
-            return true;
-        }
-        let left = (attempt.system.nonlinear.iteration.tolerance / now).ln();
-        let needed = left / ratio.ln();
-        if self.alternates(parts, attempt) && parts.pace.age == 2 && parts.pace.made > 0 {
-            parts.pace.fresh = ratio;
-        }
-        let fresh = match parts.pace.fresh > 0.0 {
-            true => (left / parts.pace.fresh.ln()).max(FRESH),
-            false => FRESH,
-        };
-        let keeps = needed <= fresh + TANGENT + price;
-        tracing::debug!(
-            "step {}, iteration {pass}: residual {now:e}, {} times the one before; the factor is {}: \
-             {needed:.1} iterations with it against {fresh:.1} with a new one that costs {:.1}",
-            attempt.state.step + 1,
-            ratio,
-            if keeps { "kept" } else { "renewed" },
-            TANGENT + price,
-        );
-        !keeps
-    }
-
-    /// Whether residuals fall by turns fast and slowly.
-    pub(super) fn alternates(&self, parts: &Parts, attempt: &Attempt) -> bool {
-        attempt.between() && !self.refines(parts, attempt)
-    }
-
-    /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
-    /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
-    /// two iterations are looked at.
-    pub(super) fn contraction(&self, parts: &Parts, attempt: &Attempt) -> Option<f64> {
-        match (&parts.residuals[..], parts.pace.age) {
-            (_, 0) => None,
-            ([.., before, now], 1) if !self.alternates(parts, attempt) => Some(now / before),
-            (_, 1) => None,
-            ([.., before, _, now], _) if self.alternates(parts, attempt) => {
-                Some((now / before).sqrt())
-            }
-            ([.., before, now], _) => Some(now / before),
-            _ => None,
-        }
-    }
-
-    /// Mixes the iteration that has been computed with those before it.
-    pub(super) fn mix(&mut self, parts: &mut Parts, attempt: &mut Attempt) {
-        let largest = match parts.floats(attempt) {
-            true => LARGEST_OF_FLOATING,
-            false => LARGEST,
-        };
-        let way = (&attempt.vectors.x[..], &mut attempt.vectors.dx[..]);
-        if parts.mixing.mix(way, &mut attempt.next.interface, largest) {
-            self.take_weak(attempt);
         }
     }
 }

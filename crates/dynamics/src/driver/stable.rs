@@ -9,13 +9,9 @@ use carom_bodies::{Body, Looks, Seen};
 use rayon::prelude::*;
 
 use super::Driver;
-use super::owners::{Attempt, Parts};
+use super::attempt::critical::{PART, changes, fastest};
 use crate::error::Error;
 use crate::shapes::Shape;
-use crate::system::System;
-
-/// Part of the critical step that is taken, for what elements change until they are looked at again.
-const PART: f64 = 0.9;
 
 /// Largest change of the lengths in an element, relative, between looks at its frequencies.
 const CHANGE: f64 = 0.1;
@@ -32,7 +28,7 @@ const RUNGS: f64 = 16.0;
 const ROUNDING: f64 = 1e-6;
 
 /// Nodes whose velocities are compared at a time.
-const NODES: usize = 4096;
+pub(super) const NODES: usize = 4096;
 
 impl Driver {
     /// Looks at the critical step of an explicit scheme anew, before a step of `dt` (s), where elements have changed; what was
@@ -222,58 +218,4 @@ impl Driver {
             direct.go_on();
         }
     }
-}
-
-impl Attempt {
-    /// Part of the critical step that a step may have, s, with the bulk viscosity of the fastest compression in the last step.
-    pub(super) fn stable_step(&self) -> f64 {
-        let control = &self.state.control;
-        let more = self.state.shapes.by_compression * control.compression;
-        match more > 0.0 {
-            true => 1.0 / (1.0 / control.stable + 0.5 * more / PART),
-            false => control.stable,
-        }
-    }
-}
-
-impl Parts {
-    /// Drops an attempt of `dt` (s) in which bulk viscosity was stronger than its size is stable with: the impact began in it, of which
-    /// the step before did not know.
-    ///
-    /// # Errors
-    /// [`Error::Viscous`].
-    pub(super) fn check_viscosity(&self, attempt: &Attempt, dt: f64) -> Result<(), Error> {
-        let state = &attempt.state;
-        let more = state.shapes.by_compression * self.stored.compression;
-        let critical = 1.0 / (PART / state.control.stable + 0.5 * more);
-        if more > 0.0 && dt > critical {
-            return Err(Error::Viscous {
-                step: state.step + 1,
-                time: state.time,
-                dt,
-                critical,
-            });
-        }
-        Ok(())
-    }
-}
-
-/// Whether the critical step of a body changes with its shape; the bound of springs holds for all elongations, and that of bars and beams
-/// whose metal flows is the elastic one.
-fn changes(body: &Body) -> bool {
-    body.as_solid().is_some() && body.has_finite_motion()
-}
-
-/// Largest square of |v - w| over the nodes of a part, m²/s².
-fn fastest(system: &System, part: usize, (w, v): (&[f64; 3], &[f64])) -> f64 {
-    let square = |node: usize| {
-        let mut sum = 0.0;
-        for (axis, unknown) in system.unknowns.translations_of(node as u32).enumerate() {
-            sum += (v[unknown] - w[axis]).powi(2);
-        }
-        sum
-    };
-    let nodes = system.nodes_of(&system.parts[part]).into_par_iter();
-    let squares = nodes.with_min_len(NODES).map(square);
-    squares.reduce(|| 0.0, f64::max)
 }

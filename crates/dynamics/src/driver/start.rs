@@ -2,17 +2,20 @@
 
 use std::sync::Arc;
 
-use super::identity::{End, energies};
-use super::leapfrog::Direct;
-use super::owners::{Attempt, Balances, Contacts, Explicit, Parts, RankWork, Stages};
-use super::record::motion_of;
-use super::{Configuration, Driver, owners};
-use crate::assembly_energy::{AssemblyEnergies, PartMotion};
+use super::Driver;
+use super::attempt::identity::{End, energies};
+use super::attempt::{Attempt, Configuration};
+use super::balances::Balances;
+use super::contacts::Contacts;
+use super::explicit::Explicit;
+use super::explicit::leapfrog::Direct;
+use super::parts::Parts;
+use super::ranks::RankWork;
+use super::stages::Stages;
 use crate::control::Control;
 use crate::costs::Costs;
 use crate::error::Error;
-use crate::exchange::Exchange;
-use crate::ledger::{Ledger, reactions};
+use crate::ledger::Ledger;
 use crate::operator::Operators;
 use crate::records::Records;
 use crate::report::{ContactReport, StepReport};
@@ -48,7 +51,7 @@ impl Driver {
         let mut driver = Driver {
             contacts: Contacts::of(&system)?,
             parts: Parts::of(&system)?,
-            links: owners::Links::of(&system),
+            links: super::links::Links::of(&system),
             stages: Stages::of(&system, &released)?,
             explicit: Explicit {
                 direct,
@@ -426,115 +429,5 @@ impl Driver {
         }
         self.keep_for_direct_steps();
         Ok(())
-    }
-}
-
-impl Attempt {
-    /// Energies of the assemblies begin with the dynamics.
-    pub(super) fn start_assemblies(&mut self) {
-        self.state.assemblies = AssemblyEnergies::default();
-        if self.is_static() {
-            return;
-        }
-        let inertia = self.inertia_of_identity();
-        let (system, work) = (&*self.system, &mut self.vectors.work);
-        let motion = &self.state.motion;
-        let mut inertial = vec![0.0; system.unknowns()];
-        system.mass.multiply(&motion.a, &mut inertial);
-        system.mass.multiply(&motion.v, work);
-        let none = vec![0.0; system.unknowns()];
-        let part = |number: usize| {
-            let unknowns = system.parts[number].clone();
-            let square = unknowns.map(|i| motion.a[i] * inertial[i]).sum::<f64>();
-            PartMotion {
-                of_scheme: inertia * square,
-                ..motion_of(system, number, ([&none; 2], motion), work)
-            }
-        };
-        self.state.assemblies = AssemblyEnergies::start(system, part);
-        self.state.records.small.begin_dynamics();
-    }
-
-    /// The exchange of momentum begins with the dynamics.
-    pub(super) fn start_exchange(&mut self) {
-        self.state.exchange = Exchange::default();
-        if self.is_static() {
-            return;
-        }
-        let system = &*self.system;
-        let work = &mut self.vectors.work;
-        system.mass.multiply(&self.state.motion.v, work);
-        let f = &self.state.forces;
-        let of = |force: &[f64], i: usize| force.get(i).copied().unwrap_or(0.0);
-        let held = |i: usize| match system.fixed[i] {
-            true => of(&f.contact, i),
-            false => 0.0,
-        };
-        let outside = |i: usize| of(&f.load, i) + of(&f.reaction, i) + held(i) + of(&f.link, i);
-        let own: Vec<f64> = (0..system.unknowns())
-            .map(|i| outside(i) - of(&f.damping, i) - of(&f.spring, i))
-            .collect();
-        let held: Vec<f64> = (0..system.unknowns()).map(|i| -held(i)).collect();
-        self.state.exchange = Exchange::start(system, work, [&own, &held]);
-    }
-
-    /// Whether loads and internal forces of the state balance where no support does it.
-    pub(super) fn is_balanced(&self) -> bool {
-        let (load, internal) = (&self.vectors.load, &self.state.motion.internal_force);
-        let (mut left, mut size) = (0.0, 0.0);
-        for i in (0..load.len()).filter(|&i| !self.system.fixed[i]) {
-            let motion = &self.state.motion;
-            let outside = load[i] + motion.contact_force[i] + motion.link_of(i);
-            left += (outside - internal[i]).powi(2);
-            size += load[i].powi(2) + internal[i].powi(2);
-        }
-        let tolerance = self.system.nonlinear.iteration.tolerance;
-        left <= tolerance * tolerance * size
-    }
-}
-
-impl Parts {
-    /// The ledger at the start, of linear forces.
-    pub(super) fn start_identity(&mut self, attempt: &mut Attempt, strain: f64) {
-        let system = Arc::clone(&attempt.system);
-        let energies = self.energies_at_the_start(attempt, strain);
-        let motion = &attempt.state.motion;
-        let super::Vectors {
-            inertia,
-            work,
-            place,
-            ..
-        } = &mut attempt.vectors;
-        system.mass.multiply(&motion.a, inertia);
-        work.copy_from_slice(&motion.internal_force);
-        reactions(&system, attempt.maps.first(), motion, motion, inertia, work);
-        place.copy_from_slice(&motion.u);
-        attempt.take_linear_springs_at_place();
-        let motion = &attempt.state.motion;
-        let super::Vectors { work, place, .. } = &mut attempt.vectors;
-        let supports = Resultant::of(&system, work);
-        for (i, force) in work.iter_mut().enumerate() {
-            *force += system.load[i] + motion.link_of(i);
-        }
-        system.mass.multiply(&motion.v, place);
-        let map = attempt.maps.first();
-        let apart = map.impulse != map.contact_impulse;
-        let contact = &attempt.state.motion.contact_force;
-        let held = |(&force, &fixed): (&f64, &bool)| if apart && fixed { -force } else { 0.0 };
-        let held: Vec<f64> = contact.iter().zip(&system.fixed).map(held).collect();
-        attempt.state.exchange = Exchange::start(&system, place, [work, &held]);
-        let held = Resultant::of(&system, &held);
-        let loads = Resultant::of(&system, &system.load);
-        let link = Resultant::of(&system, &attempt.state.motion.link_force);
-        let contact = Resultant::of(&system, &attempt.state.motion.contact_force);
-        let forces = OutsideForces {
-            loads,
-            contacts: contact,
-            supports,
-            held,
-            links: link,
-        };
-        let identity = attempt.identity.unwrap_or_default();
-        attempt.state.ledger = Ledger::start(&energies, &identity, forces);
     }
 }

@@ -6,7 +6,6 @@
 use carom_algebra::Interrupt;
 
 use super::Driver;
-use super::owners::Attempt;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
@@ -193,36 +192,6 @@ impl Driver {
     fn is_forced(&self) -> bool {
         let next = self.attempt.state.step + 1;
         self.forced.is_some_and(|every| next.is_multiple_of(every))
-    }
-}
-
-impl Attempt {
-    /// What the control remembers: of the sizes of steps those of the dynamics alone, once these have begun.
-    pub(super) fn control(&self) -> Control {
-        let mut control = self.state.control;
-        if self.state.step == self.system.static_steps() {
-            control.range = [0.0; 2];
-        }
-        control
-    }
-
-    /// Times that a step of fixed size may be halved: none where all of it is linear, whose failures have other causes.
-    pub(super) fn most_halvings(&self) -> u32 {
-        match self.system.is_nonlinear() {
-            true => self.system.nonlinear.iteration.halvings,
-            false => 0,
-        }
-    }
-
-    /// The instant at which the next step of this size (s) ends, s: instants of equal steps are products, not sums.
-    pub(super) fn end_of_step(&self, size: f64) -> f64 {
-        let step = self.state.step;
-        match self.system.nonlinear.preload {
-            Some(preload) if step < preload.steps => {
-                preload.end * ((step + 1) as f64 / preload.steps as f64)
-            }
-            _ => self.state.control.instant(step, self.state.time, size),
-        }
     }
 }
 

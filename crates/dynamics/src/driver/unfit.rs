@@ -3,7 +3,7 @@
 use carom_bodies::Solid;
 use carom_contact::Integration;
 
-use super::leapfrog::{Direct, is_leapfrog};
+use super::explicit::leapfrog::{Direct, is_leapfrog};
 use crate::on_ranks::OnRanks;
 use crate::system::{NumberedForce, System};
 

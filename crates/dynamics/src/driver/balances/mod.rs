@@ -1,0 +1,66 @@
+//! What the balance of a step is made of, and forces of supports.
+
+pub(crate) mod mean_forces;
+pub(crate) mod obstacles;
+pub(crate) mod record;
+pub(crate) mod reported;
+pub(crate) mod supports;
+pub(crate) mod works;
+
+
+use rayon::prelude::*;
+
+use crate::driver::attempt::Attempt;
+use crate::driver::attempt::forces::Loads;
+use crate::error::Error;
+use crate::resultant::Resultant;
+use supports::Jump;
+use works::Works;
+
+impl Balances {
+    /// Computes the jump of the supports at the start of the step; tells whether there is one.
+    pub(crate) fn find_jump(&mut self, attempt: &Attempt) -> Result<bool, Error> {
+        if attempt.maps.is_static() || attempt.system.nonlinear.follows.is_empty() {
+            self.jump.clear();
+            return Ok(false);
+        }
+        let span = [attempt.state.time, attempt.dt];
+        self.jump.find(&attempt.system, &attempt.state.motion, span)
+    }
+}
+
+impl Balances {
+    /// Forces of the named supports at the end: what is held has no acceleration. Those on nodes that do not `count` are left out.
+    pub(crate) fn report_supports(
+        &mut self,
+        attempt: &Attempt,
+        loads: Loads,
+        count: &dyn Fn(usize) -> bool,
+    ) {
+        let motion = &attempt.next.motion;
+        let load = |i: usize| match loads {
+            Loads::None => 0.0,
+            Loads::Dead([_, factor]) => factor * attempt.system.load[i],
+            Loads::Varying => attempt.vectors.load[i],
+        };
+        let displacement = attempt.system.is_nonlinear().then_some(&motion.u[..]);
+        let at = (&attempt.state.motion.frames[..], displacement);
+        let unknowns = &attempt.system.unknowns;
+        reported::write(&mut self.reactions, &attempt.system, at, |i| {
+            if !count(unknowns.node(i) as usize) {
+                return 0.0;
+            }
+            let damping = attempt.vectors.damping.get(i).unwrap_or(&0.0);
+            motion.internal_force[i] + damping - load(i) - motion.contact_force[i]
+        });
+    }
+}
+
+/// What the balance of a step is made of, and forces of supports.
+#[derive(Default)]
+pub(crate) struct Balances {
+    pub(crate) jump: Jump,
+    /// Forces of the named supports in the last attempt.
+    pub(crate) reactions: Vec<Resultant>,
+    pub(crate) works: Works,
+}
