@@ -2,9 +2,9 @@
 
 use carom_laws::{Friction, Law, Local};
 
-use crate::contact_solver::PointForces;
 use crate::coulomb::Tangential;
 use crate::interface::Candidate;
+use crate::point_forces::PointForces;
 
 /// A contact point before the forces of a step: its law, the start of the step, and what it carried last.
 #[derive(Clone, Copy, Debug)]

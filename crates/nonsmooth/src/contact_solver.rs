@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use carom_algebra::{Error as AlgebraError, Interrupt};
-use carom_laws::Status;
 use thiserror::Error as ThisError;
 
 use crate::Compliance;
-use crate::coulomb::{Coulomb, FrictionFailure, Posed, Slip, Tangential};
+use crate::coulomb::{Coulomb, FrictionFailure, Posed, Tangential};
 use crate::interface::{Candidate, Failure, Interface};
+use crate::point_forces::PointForces;
 
 /// The candidates of a problem, and what friction adds to each.
 #[derive(Clone, Copy)]
@@ -93,19 +93,6 @@ pub enum Unsolved {
         /// Cause.
         cause: AlgebraError,
     },
-}
-
-/// Forces and statuses of one candidate.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PointForces {
-    /// Normal force, N, compressive positive.
-    pub normal: f64,
-    /// Friction force along the tangents, N.
-    pub tangential: [f64; 2],
-    /// Status of the law.
-    pub status: Status,
-    /// Status of friction.
-    pub slip: Slip,
 }
 
 /// Solves for the forces of contact points.

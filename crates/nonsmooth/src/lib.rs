@@ -9,15 +9,15 @@ mod contact_solver;
 pub mod coulomb;
 pub mod interface;
 mod lumped;
+mod point_forces;
 mod tangents;
 mod weak;
 mod work;
 
 pub use compliance::Compliance;
 pub use contact_point::ContactPoint;
-pub use contact_solver::{
-    CandidateData, Candidates, Condensed, ContactSolver, PointForces, Unsolved,
-};
+pub use contact_solver::{CandidateData, Candidates, Condensed, ContactSolver, Unsolved};
 pub use lumped::{Lumped, Unknown};
+pub use point_forces::PointForces;
 pub use weak::Weak;
 pub use work::impulses_of_work;

@@ -18,7 +18,6 @@
 
 use std::sync::Arc;
 
-
 use super::Driver;
 use super::parts::rigid::{Rigid, Span, norm};
 use crate::coulomb::Slip;

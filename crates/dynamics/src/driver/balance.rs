@@ -6,7 +6,6 @@
 
 use std::sync::Arc;
 
-
 use super::Driver;
 use crate::error::Error;
 use crate::step_map::StepMap;

@@ -1,7 +1,5 @@
 //! The interface problem of an iteration: candidates, forces, and the motion with them.
 
-
-
 use super::Driver;
 use crate::error::Error;
 

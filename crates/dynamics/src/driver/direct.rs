@@ -7,8 +7,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use rayon::prelude::*;
-
 use super::Driver;
 use super::attempt::forces::Loads;
 use super::explicit::leapfrog::{Direct, is_leapfrog};

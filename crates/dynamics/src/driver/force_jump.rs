@@ -10,7 +10,6 @@
 //! is h F whatever the scheme weighs, its share of the way h² F/2 (φ h² F in the scheme of Tchamwa and Wielgosz). Displacements, velocities and
 //! the energy do not jump; the term in |a|²_M of the energy that a scheme balances does, which the ledger counts as taken by the scheme.
 
-
 use super::Driver;
 use crate::error::Error;
 use crate::scheme::Scheme;

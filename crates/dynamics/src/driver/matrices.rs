@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-
 use super::Driver;
 use super::parts::effective::{At, Turning};
 use super::parts::floating::{GROWTH as HEAVIER, LARGEST};

@@ -1,6 +1,5 @@
 //! The work of obstacles that move.
 
-
 use super::Driver;
 use crate::records::Pushed;
 

@@ -8,7 +8,7 @@ use crate::system::{Motion, System};
 
 /// The configuration in which a contact is paired.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Paired {
+pub(crate) enum Paired {
     /// The newest known before the unknown, and a part of the way of the step on with its velocity.
     Captured(f64),
     /// The middle of the step.
@@ -21,7 +21,7 @@ pub(super) enum Paired {
 
 impl Paired {
     /// As a row of a map.
-    pub(super) fn row(self, map: &StepMap) -> Row {
+    pub(crate) fn row(self, map: &StepMap) -> Row {
         match self {
             Paired::Captured(part) => Row {
                 v: map.placed.v + part * map.moves,
@@ -45,21 +45,21 @@ impl Paired {
 
 /// How a contact is paired.
 #[derive(Clone, Copy)]
-pub(super) struct PairingMode {
+pub(crate) struct PairingMode {
     /// The configuration in which it is.
-    pub(super) paired: Paired,
+    pub(crate) paired: Paired,
     /// Derivative of that configuration by the unknown; zero where all of it is known before the step.
-    pub(super) turning: f64,
+    pub(crate) turning: f64,
 }
 
 /// Whether laws in the rate hold for a velocity on which contact forces act through the mass too: the interface problem then
 /// sums the compliances of the step and of the mass.
-pub(super) fn sums_compliances(system: &System, map: &StepMap) -> bool {
+pub(crate) fn sums_compliances(system: &System, map: &StepMap) -> bool {
     map.rate.c != 0.0 && system.scheme.get().takes(Level::Rate)
 }
 
 /// Gap and rate that a law constrains, and their factors of x over those of the map.
-pub(super) fn instant(map: &StepMap, law: &Law) -> ([Row; 2], [f64; 2]) {
+pub(crate) fn instant(map: &StepMap, law: &Law) -> ([Row; 2], [f64; 2]) {
     match law.get().level() {
         Level::GapAndRate => (map.compliant(), map.compliant_factors()),
         Level::Gap | Level::Rate => ([map.gap, map.rate], [1.0; 2]),
@@ -70,19 +70,19 @@ pub(super) fn instant(map: &StepMap, law: &Law) -> ([Row; 2], [f64; 2]) {
 /// velocity does. In a step much longer than a wave takes across an element the velocity of the shortest waves times dt/2
 /// leads much further than any node gets, and the turning of the rows would be that of an explicit step of the mass m of the
 /// surface nodes alone, unstable beyond dt² |P ∂²g/∂u²| = 4 m.
-pub(super) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
+pub(crate) fn looks_ahead(map: &StepMap, contact: &Contact, law: &Law) -> bool {
     map.force.x != 0.0 && contact.turns() && law.get().capture() > 0.0
 }
 
 /// The gap by which a law tells whether a point is closed (S_d): at the captured instant, `gap`, or at the start, a `way`
 /// (m) before it, whichever is less. A point that is closed and leaves stays with its law, which alone knows whether
 /// the step turns it back.
-pub(super) fn least_gap(gap: f64, way: f64) -> f64 {
+pub(crate) fn least_gap(gap: f64, way: f64) -> f64 {
     gap - way.max(0.0)
 }
 
 /// The part of the way from the start of the step to `end` at which a law takes the geometry.
-pub(super) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64]) {
+pub(crate) fn part_way(motion: &Motion, end: &[f64], law: &Law, out: &mut [f64]) {
     let part = law.get().capture();
     for (i, q) in out.iter_mut().enumerate() {
         *q = (1.0 - part) * motion.u[i] + part * end[i];

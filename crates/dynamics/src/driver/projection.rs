@@ -11,7 +11,6 @@
 
 use std::sync::Arc;
 
-
 use super::Driver;
 use super::attempt::identity::energies;
 use super::attempt::vectors::Vectors;

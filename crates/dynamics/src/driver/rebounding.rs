@@ -8,7 +8,6 @@
 //! Among the rigid bodies that points of an iteration join, the coefficient is therefore e s with the largest s up to 1 that makes no
 //! energy, found by halving.
 
-
 use super::Driver;
 use super::contacts::rebound::Rebound;
 use crate::error::Error;

@@ -16,7 +16,6 @@
 
 use std::sync::Arc;
 
-
 use super::Driver;
 use super::parts::mixing::{LARGEST, Refined};
 use super::parts::solve::WITHIN;

@@ -2,7 +2,6 @@
 //!
 //! Where all is linear in the unknown, one iteration is all: free motion, interface problem, correction.
 
-
 use carom_contact::Search;
 
 use super::Driver;

@@ -6,7 +6,6 @@
 //! they differ by more than a part of it.
 
 use carom_bodies::{Body, Looks, Seen};
-use rayon::prelude::*;
 
 use super::Driver;
 use super::attempt::critical::{PART, changes, fastest};
@@ -26,9 +25,6 @@ const RUNGS: f64 = 16.0;
 /// Relative difference of steps that are equal but for rounding: far from the origin, places and so lengths in elements are rounded to
 /// `1e-16 |x| / l`. A step that is the fraction [`PART`] of the critical one must not be halved for that.
 const ROUNDING: f64 = 1e-6;
-
-/// Nodes whose velocities are compared at a time.
-pub(super) const NODES: usize = 4096;
 
 impl Driver {
     /// Looks at the critical step of an explicit scheme anew, before a step of `dt` (s), where elements have changed; what was

@@ -1,6 +1,5 @@
 //! Forces and motion at the end of an attempt, as its balance takes them.
 
-
 use carom_contact::Target;
 
 use super::Attempt;
@@ -72,39 +71,7 @@ impl Attempt {
         self.system.mass.multiply(&motion.a, work);
         carom_algebra::reduce::dot(&motion.a, work)
     }
-}
 
-/// Weights of the forces at the start and of the step in their means, by zone.
-pub(crate) struct Weights {
-    pub(crate) forces: Vec<[f64; 2]>,
-    pub(crate) contacts: Vec<[f64; 2]>,
-    /// Whether contact forces push by themselves.
-    pub(crate) pushes: bool,
-}
-
-/// The forces in the balance of the step.
-pub(crate) fn balanced<'a>(
-    vectors: &'a Vectors,
-    link: &'a [f64],
-    [contact, reaction, spring]: [&'a [f64]; 3],
-) -> StepForces<&'a [f64]> {
-    StepForces {
-        load: &vectors.load,
-        contact,
-        reaction,
-        inertia: &vectors.inertia,
-        internal: &vectors.balanced,
-        damping: &vectors.damping,
-        link,
-        spring,
-    }
-}
-
-pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-impl Attempt {
     pub(crate) fn weights_of_forces(&self) -> Weights {
         let forces = self.weights();
         let pushes = !self.vectors.push.is_empty();
@@ -136,9 +103,7 @@ impl Attempt {
             _ => touch,
         }
     }
-}
 
-impl Attempt {
     /// How far the translation of an obstacle goes in the step, m; `None` where it does not move.
     pub(crate) fn way_of_obstacle(&self, contact: usize) -> Option<[f64; 3]> {
         match &self.system.contacts[contact].target {
@@ -163,9 +128,7 @@ impl Attempt {
         let work = |pushed: &Pushed| dot(&pushed.force, &way) + self.dt * pushed.turn;
         Some(weights[0] * work(&pushed[0]) + weights[1] * work(&pushed[1]))
     }
-}
 
-impl Attempt {
     pub(crate) fn weights_of_work(&self, contact: usize) -> super::identity::WorkWeights {
         match self.system.is_nonlinear() {
             false => self.work_weights(),
@@ -194,4 +157,34 @@ impl Attempt {
             false => self.map_of(contact).contact_impulse,
         }
     }
+}
+
+/// Weights of the forces at the start and of the step in their means, by zone.
+pub(crate) struct Weights {
+    pub(crate) forces: Vec<[f64; 2]>,
+    pub(crate) contacts: Vec<[f64; 2]>,
+    /// Whether contact forces push by themselves.
+    pub(crate) pushes: bool,
+}
+
+/// The forces in the balance of the step.
+pub(crate) fn balanced<'a>(
+    vectors: &'a Vectors,
+    link: &'a [f64],
+    [contact, reaction, spring]: [&'a [f64]; 3],
+) -> StepForces<&'a [f64]> {
+    StepForces {
+        load: &vectors.load,
+        contact,
+        reaction,
+        inertia: &vectors.inertia,
+        internal: &vectors.balanced,
+        damping: &vectors.damping,
+        link,
+        spring,
+    }
+}
+
+pub(crate) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
 }

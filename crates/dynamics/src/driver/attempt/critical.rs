@@ -4,8 +4,10 @@ use carom_bodies::Body;
 use rayon::prelude::*;
 
 use super::Attempt;
-use crate::driver::stable::NODES;
 use crate::system::System;
+
+/// Nodes whose velocities are compared at a time.
+pub(crate) const NODES: usize = 4096;
 
 /// Part of the critical step that is taken, for what elements change until they are looked at again.
 pub(crate) const PART: f64 = 0.9;

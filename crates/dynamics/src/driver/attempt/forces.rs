@@ -1,6 +1,5 @@
 //! Loads, damping and forces at given unknowns of an attempt.
 
-
 use carom_algebra::Error as AlgebraError;
 use rayon::prelude::*;
 
@@ -45,22 +44,7 @@ impl Attempt {
             Failure::Interrupted { .. } => Error::Interrupted,
         }
     }
-}
 
-/// Unknowns of which one thread writes the displacement, at least.
-pub(crate) const UNKNOWNS: usize = 8192;
-
-/// Loads of such a step.
-#[derive(Clone, Copy)]
-pub(crate) enum Loads {
-    None,
-    /// The dead loads, times these factors at start and end.
-    Dead([f64; 2]),
-    /// Those in the vector of loads.
-    Varying,
-}
-
-impl Attempt {
     /// Loads in the balance of the step, which holds at an instant of its own in each zone, at the configuration in `place`, N.
     pub(crate) fn evaluate_loads_of_step(&mut self) {
         let (start, dt) = (self.state.time, self.dt);
@@ -114,9 +98,7 @@ impl Attempt {
         }
         self.add_bolts(time);
     }
-}
 
-impl Attempt {
     /// Displacements of the end: those found ahead, if the step is as long as it was taken to be.
     pub(crate) fn place_end(&mut self, direct: &mut Direct) {
         let (row, motion) = (self.maps.first().displacement, &self.state.motion);
@@ -168,4 +150,17 @@ impl Attempt {
     pub(crate) fn has_forces_beside(&self) -> bool {
         self.system.has_damping() || self.has_links()
     }
+}
+
+/// Unknowns of which one thread writes the displacement, at least.
+pub(crate) const UNKNOWNS: usize = 8192;
+
+/// Loads of such a step.
+#[derive(Clone, Copy)]
+pub(crate) enum Loads {
+    None,
+    /// The dead loads, times these factors at start and end.
+    Dead([f64; 2]),
+    /// Those in the vector of loads.
+    Varying,
 }

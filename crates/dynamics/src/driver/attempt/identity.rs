@@ -1,6 +1,5 @@
 //! Inertia and damping in the balance of a step whose forces are all linear.
 
-
 use carom_algebra::reduce::dot;
 use carom_bodies::Body;
 

@@ -1,6 +1,5 @@
 //! Links of an attempt: their terms, and what rows that turn miss.
 
-
 use super::Attempt;
 use super::identity::WorkWeights;
 use crate::system::Turned;
@@ -21,9 +20,7 @@ impl Attempt {
         let [old, new] = self.weights_of(zone);
         WorkWeights { old, new, lag: 0.0 }
     }
-}
 
-impl Attempt {
     /// What of the second derivatives of the rows by time the velocities of the state give.
     pub(crate) fn centripetal_rows(&self) -> Vec<(usize, f64)> {
         let motion = &self.state.motion;

@@ -6,6 +6,7 @@ pub(crate) mod critical;
 pub(crate) mod deletion;
 pub(crate) mod forces;
 pub(crate) mod identity;
+pub(crate) mod in_stages;
 pub(crate) mod jump;
 pub(crate) mod links;
 pub(crate) mod points;
@@ -23,10 +24,10 @@ use carom_contact::law::{Displacement, Level};
 use carom_contact::{Contact, Law};
 
 use crate::contact_sums::ContactSums;
-use crate::control::{Attempts, Control};
+use crate::control::Control;
 use crate::costs::Phases;
 use crate::error::Error;
-use crate::march::Stepper;
+
 use crate::report::Notices;
 use crate::scheme::EnergyIdentity;
 use crate::state::{State, state_without_motion};
@@ -34,6 +35,28 @@ use crate::step_map::StepMap;
 use crate::system::{Maps, System};
 use scheme_stage::SchemeStage;
 use vectors::Vectors;
+
+/// The attempt of a step under way: where it begins, how large it is, where it ends.
+pub(crate) struct Attempt {
+    pub(crate) system: Arc<System>,
+    /// Size of the attempt under way, s, and the maps of the zones.
+    pub(crate) dt: f64,
+    pub(crate) maps: Maps,
+    /// The stage of the step that the attempt computes, of schemes of several.
+    pub(crate) stage: SchemeStage,
+    /// What these maps are of; none before they are made.
+    pub(crate) sized: Option<SizeOfMaps>,
+    /// The energy identity of the scheme; none of a static step, or where none is known.
+    pub(crate) identity: Option<EnergyIdentity>,
+    /// Ends the attempt under way where it is set.
+    pub(crate) interrupt: Interrupt,
+    pub(crate) state: State,
+    pub(crate) next: State,
+    /// What the attempt went on after.
+    pub(crate) notices: Notices,
+    pub(crate) vectors: Vectors,
+    pub(crate) phases: Phases,
+}
 
 impl Attempt {
     /// Counts as contact the time since `begin` that has not been added to the phases `before` elsewhere.
@@ -44,12 +67,7 @@ impl Attempt {
         let counted = counted(&self.phases) - counted(&before);
         self.phases.contact += begin.elapsed().saturating_sub(counted);
     }
-}
 
-/// What a law in the rate is in a static stage.
-static AT_REST: Law = Law::Displacement(Displacement { projection: false });
-
-impl Attempt {
     /// What an attempt has come to: nothing, where somebody has asked for its end meanwhile. Part of what loops found may be missing then.
     pub(crate) fn unless_interrupted(&self, outcome: Result<(), Error>) -> Result<(), Error> {
         match self.interrupt.is_set() {
@@ -121,42 +139,7 @@ impl Attempt {
             false => 1.0,
         }
     }
-}
 
-/// What the maps of an attempt are of.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct SizeOfMaps {
-    /// Size of the attempt and of the one after it, s.
-    pub(crate) dt: f64,
-    pub(crate) next: f64,
-    pub(crate) is_static: bool,
-    /// Number of the stage, and the step that it belongs to, s.
-    pub(crate) stage: (usize, f64),
-}
-
-/// The attempt of a step under way: where it begins, how large it is, where it ends.
-pub(crate) struct Attempt {
-    pub(crate) system: Arc<System>,
-    /// Size of the attempt under way, s, and the maps of the zones.
-    pub(crate) dt: f64,
-    pub(crate) maps: Maps,
-    /// The stage of the step that the attempt computes, of schemes of several.
-    pub(crate) stage: SchemeStage,
-    /// What these maps are of; none before they are made.
-    pub(crate) sized: Option<SizeOfMaps>,
-    /// The energy identity of the scheme; none of a static step, or where none is known.
-    pub(crate) identity: Option<EnergyIdentity>,
-    /// Ends the attempt under way where it is set.
-    pub(crate) interrupt: Interrupt,
-    pub(crate) state: State,
-    pub(crate) next: State,
-    /// What the attempt went on after.
-    pub(crate) notices: Notices,
-    pub(crate) vectors: Vectors,
-    pub(crate) phases: Phases,
-}
-
-impl Attempt {
     /// The first one of a system.
     pub(crate) fn of(system: Arc<System>) -> Attempt {
         let maps = Maps::new(&system, system.dt, system.dt);
@@ -182,26 +165,13 @@ impl Attempt {
             system,
         }
     }
-}
 
-/// A configuration of the step.
-#[derive(Clone, Copy)]
-pub(crate) enum Configuration {
-    /// The scratch configuration and velocity.
-    Place,
-    /// The end of the step.
-    Next,
-}
-
-impl Attempt {
     /// Whether an impact of a contact begins or ends in the step.
     pub(crate) fn impacts_change(&self, contacts: &[ContactSums]) -> bool {
         let mut records = self.state.records.contacts.iter().zip(contacts);
         records.any(|(record, of)| record.changes(of.report.closed > 0))
     }
-}
 
-impl Attempt {
     /// What the control remembers: of the sizes of steps those of the dynamics alone, once these have begun.
     pub(crate) fn control(&self) -> Control {
         let mut control = self.state.control;
@@ -229,4 +199,27 @@ impl Attempt {
             _ => self.state.control.instant(step, self.state.time, size),
         }
     }
+}
+
+/// What a law in the rate is in a static stage.
+static AT_REST: Law = Law::Displacement(Displacement { projection: false });
+
+/// What the maps of an attempt are of.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) struct SizeOfMaps {
+    /// Size of the attempt and of the one after it, s.
+    pub(crate) dt: f64,
+    pub(crate) next: f64,
+    pub(crate) is_static: bool,
+    /// Number of the stage, and the step that it belongs to, s.
+    pub(crate) stage: (usize, f64),
+}
+
+/// A configuration of the step.
+#[derive(Clone, Copy)]
+pub(crate) enum Configuration {
+    /// The scratch configuration and velocity.
+    Place,
+    /// The end of the step.
+    Next,
 }

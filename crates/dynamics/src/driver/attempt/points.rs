@@ -48,9 +48,7 @@ impl Attempt {
             .filter(|(_, force)| **force != 0.0)
             .map(|(point, _)| point)
     }
-}
 
-impl Attempt {
     /// Gap and rate that the law of a contact constrains, in the map of its secondary side, and their factors of x over those of
     /// the map.
     pub(crate) fn constrained(&self, number: usize) -> ([Row; 2], [f64; 2]) {
@@ -83,9 +81,7 @@ impl Attempt {
         let contact = &self.system.contacts[contact];
         !self.between() && looks_ahead(map, contact, self.law(contact))
     }
-}
 
-impl Attempt {
     /// Factors of x in gap and rate that the law of a contact constrains, over those of the problem: of the first map.
     pub(crate) fn factors(&self, contact: usize) -> [f64; 2] {
         let (map, [gap, rate]) = (self.map_of(contact), self.constrained(contact).1);
@@ -99,12 +95,7 @@ impl Attempt {
             rate * over(map.rate.x, first.rate.x),
         ]
     }
-}
 
-/// Motion over the size of the model by which loads say what stiffness a model has.
-const DEFLECTION: f64 = 1e-3;
-
-impl Attempt {
     /// A stiffness of the size of what the model has where it has none that is known, N/m: the loads would move it by a thousandth of itself.
     pub(crate) fn stiffness_by_load(&self) -> f64 {
         let (load, size) = (
@@ -116,9 +107,7 @@ impl Attempt {
             false => 1.0,
         }
     }
-}
 
-impl Attempt {
     /// Begins with the motion of no acceleration, or with the one before it; motions that are prescribed come as a jump in
     /// the first iteration, so that the inside of the body goes along.
     pub(crate) fn predict(&mut self) {
@@ -203,9 +192,7 @@ impl Attempt {
             }
         }
     }
-}
 
-impl Attempt {
     /// Whether sliding is a velocity at the end of the step, or the way in it. In explicit steps no force changes the way, and
     /// a point could not stick by it.
     pub(crate) fn slides_by_rate(&self) -> bool {
@@ -217,3 +204,6 @@ impl Attempt {
         !self.maps.is_static() && (way_is_known || rubbing.all(of_rate))
     }
 }
+
+/// Motion over the size of the model by which loads say what stiffness a model has.
+const DEFLECTION: f64 = 1e-3;

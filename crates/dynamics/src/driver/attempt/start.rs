@@ -1,6 +1,5 @@
 //! The states at the start of an attempt.
 
-
 use super::Attempt;
 use crate::assembly_energy::{AssemblyEnergies, PartMotion};
 use crate::driver::balances::record::motion_of;
@@ -40,9 +39,7 @@ impl Attempt {
             self.state.motion.a[follows.unknown as usize] = 0.0;
         }
     }
-}
 
-impl Attempt {
     /// Energies of the assemblies begin with the dynamics.
     pub(crate) fn start_assemblies(&mut self) {
         self.state.assemblies = AssemblyEnergies::default();

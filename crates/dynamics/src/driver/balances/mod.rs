@@ -5,10 +5,8 @@ pub(crate) mod obstacles;
 pub(crate) mod record;
 pub(crate) mod reported;
 pub(crate) mod supports;
+pub(crate) mod worked;
 pub(crate) mod works;
-
-
-use rayon::prelude::*;
 
 use crate::driver::attempt::Attempt;
 use crate::driver::attempt::forces::Loads;
@@ -16,6 +14,15 @@ use crate::error::Error;
 use crate::resultant::Resultant;
 use supports::Jump;
 use works::Works;
+
+/// What the balance of a step is made of, and forces of supports.
+#[derive(Default)]
+pub(crate) struct Balances {
+    pub(crate) jump: Jump,
+    /// Forces of the named supports in the last attempt.
+    pub(crate) reactions: Vec<Resultant>,
+    pub(crate) works: Works,
+}
 
 impl Balances {
     /// Computes the jump of the supports at the start of the step; tells whether there is one.
@@ -27,9 +34,7 @@ impl Balances {
         let span = [attempt.state.time, attempt.dt];
         self.jump.find(&attempt.system, &attempt.state.motion, span)
     }
-}
 
-impl Balances {
     /// Forces of the named supports at the end: what is held has no acceleration. Those on nodes that do not `count` are left out.
     pub(crate) fn report_supports(
         &mut self,
@@ -54,13 +59,4 @@ impl Balances {
             motion.internal_force[i] + damping - load(i) - motion.contact_force[i]
         });
     }
-}
-
-/// What the balance of a step is made of, and forces of supports.
-#[derive(Default)]
-pub(crate) struct Balances {
-    pub(crate) jump: Jump,
-    /// Forces of the named supports in the last attempt.
-    pub(crate) reactions: Vec<Resultant>,
-    pub(crate) works: Works,
 }

@@ -1,6 +1,5 @@
 //! The work of obstacles that move.
 
-
 use super::Balances;
 use crate::driver::attempt::Attempt;
 use crate::driver::contacts::Contacts;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-
 use super::Balances;
 use crate::assembly_energy::{PartMotion, balance_taken};
 use crate::driver::attempt::Attempt;

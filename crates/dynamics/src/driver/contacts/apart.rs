@@ -1,8 +1,5 @@
 //! Groups of contact points that do not act on each other, solved apart.
 
-
-use rayon::prelude::*;
-
 use super::Contacts;
 use super::span::Span;
 use crate::driver::attempt::Attempt;

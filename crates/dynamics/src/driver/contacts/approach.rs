@@ -1,6 +1,5 @@
 //! How far loose pieces are from the contacts that may hold them.
 
-
 use carom_contact::Target;
 
 use super::Contacts;

@@ -1,8 +1,6 @@
 //! The contacts of an explicit step with lumped mass.
 
-
 use carom_contact::Rows;
-use rayon::prelude::*;
 
 use super::Contacts;
 use crate::driver::attempt::Attempt;

@@ -1,6 +1,5 @@
 //! The contact forces of an iteration.
 
-
 use carom_nonsmooth::{Compliance as D, Condensed, ContactSolver, Unsolved};
 use carom_system::ContactPair;
 
@@ -22,7 +21,12 @@ impl Contacts {
     }
 
     /// N x of the motion of the iteration without contact forces, along a row of a candidate; see [`Parts::free_along`].
-    pub(crate) fn free_along(&self, (parts, attempt): (&Parts, &Attempt), width: u32, number: u32) -> f64 {
+    pub(crate) fn free_along(
+        &self,
+        (parts, attempt): (&Parts, &Attempt),
+        width: u32,
+        number: u32,
+    ) -> f64 {
         let point = (number / width) as usize;
         let interface = &attempt.next.interface;
         let last = match (number % width) as usize {

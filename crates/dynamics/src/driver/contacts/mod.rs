@@ -50,48 +50,6 @@ use passage::Passage;
 use rebound::Rebound;
 use weak::{WeakForms, WithWeak};
 
-impl Contacts {
-    /// Whether the effective matrix leaves out much of the derivative of the forces: of those between two states what is not
-    /// symmetric, of contacts whose points slide how rows and weights move with them.
-    pub(crate) fn leaves_out(&self, attempt: &Attempt) -> bool {
-        let mut contacts = attempt.system.contacts.iter().enumerate();
-        let slides = |(number, contact): (usize, &ContactPair)| {
-            contact.sliding == Sliding::Finite && self.turning(number) != 0.0
-        };
-        attempt.between() || contacts.any(slides)
-    }
-}
-
-impl Contacts {
-    /// How long after the start of the step a contact is paired, s.
-    pub(crate) fn paired_after(&self, attempt: &Attempt, number: usize) -> f64 {
-        let law = attempt.law(&attempt.system.contacts[number]);
-        match law.get().level() {
-            _ if attempt.between() => 0.5 * attempt.dt,
-            Level::Rate => self.captured(attempt, number) * attempt.dt,
-            Level::Gap => attempt.dt,
-            Level::GapAndRate => attempt.map_of(number).instant(attempt.dt),
-        }
-    }
-
-    /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
-    pub(crate) fn size(&mut self, attempt: &mut Attempt, dt: f64, next: f64) {
-        attempt.dt = dt;
-        let sized = Some(SizeOfMaps {
-            dt,
-            next,
-            is_static: attempt.is_static(),
-            stage: attempt.stage.key(),
-        });
-        if attempt.sized == sized {
-            return;
-        }
-        attempt.sized = sized;
-        attempt.renew_maps(dt, next);
-        self.renew_pairing_modes(attempt);
-    }
-}
-
 /// Contacts: search, pairing, points that may carry a force, their laws, the problems of forces and friction, what they did.
 pub(crate) struct Contacts {
     pub(crate) pairing_modes: Vec<PairingMode>,
@@ -138,6 +96,44 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
+    /// Whether the effective matrix leaves out much of the derivative of the forces: of those between two states what is not
+    /// symmetric, of contacts whose points slide how rows and weights move with them.
+    pub(crate) fn leaves_out(&self, attempt: &Attempt) -> bool {
+        let mut contacts = attempt.system.contacts.iter().enumerate();
+        let slides = |(number, contact): (usize, &ContactPair)| {
+            contact.sliding == Sliding::Finite && self.turning(number) != 0.0
+        };
+        attempt.between() || contacts.any(slides)
+    }
+
+    /// How long after the start of the step a contact is paired, s.
+    pub(crate) fn paired_after(&self, attempt: &Attempt, number: usize) -> f64 {
+        let law = attempt.law(&attempt.system.contacts[number]);
+        match law.get().level() {
+            _ if attempt.between() => 0.5 * attempt.dt,
+            Level::Rate => self.captured(attempt, number) * attempt.dt,
+            Level::Gap => attempt.dt,
+            Level::GapAndRate => attempt.map_of(number).instant(attempt.dt),
+        }
+    }
+
+    /// The map of the step of this size from the present state, of an explicit scheme before one of the size `next` (both s).
+    pub(crate) fn size(&mut self, attempt: &mut Attempt, dt: f64, next: f64) {
+        attempt.dt = dt;
+        let sized = Some(SizeOfMaps {
+            dt,
+            next,
+            is_static: attempt.is_static(),
+            stage: attempt.stage.key(),
+        });
+        if attempt.sized == sized {
+            return;
+        }
+        attempt.sized = sized;
+        attempt.renew_maps(dt, next);
+        self.renew_pairing_modes(attempt);
+    }
+
     /// Those of a system.
     ///
     /// # Errors

@@ -1,6 +1,5 @@
 //! What the contacts of a step did: totals, points that have passed what they face, work of obstacles.
 
-
 use carom_contact::{Rows, Target};
 
 use super::Contacts;
@@ -46,9 +45,7 @@ impl Contacts {
         };
         pushed
     }
-}
 
-impl Contacts {
     /// How many points of a contact have passed what they face in the step, are not seen behind it and have no force.
     pub(crate) fn passed(&self, attempt: &Attempt, number: usize) -> u64 {
         let (system, depth) = (&*attempt.system, self.passage.depths[number]);
@@ -81,29 +78,7 @@ impl Contacts {
         };
         passed as u64
     }
-}
 
-/// Sum of a normal force or impulse over points of a contact, and its resultant on the secondary body.
-pub(crate) fn total(
-    points: impl Iterator<Item = usize>,
-    rows: &Rows,
-    of_point: impl Fn(usize) -> f64,
-) -> (f64, [f64; 3]) {
-    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
-    for point in points {
-        let value = of_point(point);
-        if value == 0.0 {
-            continue;
-        }
-        sum += value;
-        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
-            *sum += value * n;
-        }
-    }
-    (sum, resultant)
-}
-
-impl Contacts {
     /// The record of [`passing`](crate::records::ContactRecord::passing) with the step.
     pub(crate) fn passing(&self, attempt: &Attempt, number: usize) -> Largest {
         let system = &*attempt.system;
@@ -150,4 +125,24 @@ impl Contacts {
         let points = attempt.system.points_of(contact);
         self.active.within(points).map(of_point).sum()
     }
+}
+
+/// Sum of a normal force or impulse over points of a contact, and its resultant on the secondary body.
+pub(crate) fn total(
+    points: impl Iterator<Item = usize>,
+    rows: &Rows,
+    of_point: impl Fn(usize) -> f64,
+) -> (f64, [f64; 3]) {
+    let (mut sum, mut resultant) = (0.0, [0.0; 3]);
+    for point in points {
+        let value = of_point(point);
+        if value == 0.0 {
+            continue;
+        }
+        sum += value;
+        for (sum, n) in resultant.iter_mut().zip(rows.resultant(point)) {
+            *sum += value * n;
+        }
+    }
+    (sum, resultant)
 }

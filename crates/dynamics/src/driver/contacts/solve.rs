@@ -1,7 +1,5 @@
 //! When the contacts of an iteration ask for new matrices, and how far they are from their laws.
 
-
-
 use super::Contacts;
 use crate::driver::attempt::Attempt;
 use crate::driver::parts::Parts;
@@ -31,15 +29,7 @@ impl Contacts {
             history: history.collect::<Vec<_>>().join(", ").into(),
         }
     }
-}
 
-/// Iterations that a fresh factor is counted to need.
-const FRESH: f64 = 2.0;
-
-/// Cost of a new tangent beside its factorisation, in iterations with the old one.
-const TANGENT: f64 = 3.0;
-
-impl Contacts {
     /// Whether this iteration needs a new factor.
     pub(crate) fn wants_factor(&self, parts: &mut Parts, attempt: &Attempt, pass: usize) -> bool {
         if !parts.effective.iterates() {
@@ -116,3 +106,9 @@ impl Contacts {
         }
     }
 }
+
+/// Iterations that a fresh factor is counted to need.
+const FRESH: f64 = 2.0;
+
+/// Cost of a new tangent beside its factorisation, in iterations with the old one.
+const TANGENT: f64 = 3.0;

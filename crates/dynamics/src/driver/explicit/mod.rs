@@ -2,8 +2,6 @@
 
 pub(crate) mod leapfrog;
 
-
-
 use crate::shapes::Rates;
 use leapfrog::Direct;
 

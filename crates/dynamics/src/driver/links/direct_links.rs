@@ -1,6 +1,5 @@
 //! Links in explicit steps with lumped mass that meet no contact.
 
-
 use super::Links;
 use crate::condensed::Condensed;
 use crate::driver::attempt::Attempt;

@@ -1,6 +1,5 @@
 //! Room for a force that jumps, and what the mass answers to it.
 
-
 use crate::error::Error;
 use crate::operator::Operators;
 use crate::system::System;

@@ -8,7 +8,6 @@ pub(crate) mod turned;
 
 use std::sync::Arc;
 
-
 use crate::system::{LinkRow, System};
 use force_jump::ForceJump;
 use linking::Multipliers;

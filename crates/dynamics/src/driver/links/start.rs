@@ -51,9 +51,7 @@ impl Links {
         parts.end_iteration(attempt);
         Ok(())
     }
-}
 
-impl Links {
     /// Begins the attempt with the multipliers of the state.
     pub(crate) fn begin_links(&mut self, attempt: &Attempt) {
         if attempt.has_links() {
@@ -200,9 +198,7 @@ impl Links {
             linking.hold(&system, operators, forces, (defect, free));
         }
     }
-}
 
-impl Links {
     /// The residual with the forces of links as they stand.
     pub(crate) fn add_link_force(&self, attempt: &mut Attempt) {
         let vectors = &mut attempt.vectors;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-
 use super::Parts;
 use crate::driver::attempt::Attempt;
 use crate::driver::attempt::identity::{End, difference, energies};
@@ -41,9 +40,7 @@ impl Parts {
             }
         }
     }
-}
 
-impl Parts {
     /// Energies of the end, with what the scheme balances beside.
     pub(crate) fn energies_at_the_end(
         &mut self,
@@ -74,15 +71,17 @@ impl Parts {
     }
 
     /// The term of the scheme in the energy of the ledger, at the start of the step, J.
-    pub(crate) fn own_energy_at_the_start(&mut self, attempt: &mut Attempt, identity: &EnergyIdentity) -> f64 {
+    pub(crate) fn own_energy_at_the_start(
+        &mut self,
+        attempt: &mut Attempt,
+        identity: &EnergyIdentity,
+    ) -> f64 {
         let strain = attempt.state.ledger.balance.strain;
         let [memory, lagged] = self.own_energies(attempt, End::Start, identity, strain);
         let acceleration = attempt.acceleration_at_the_start(identity);
         identity.inertia * acceleration + identity.memory * memory + lagged
     }
-}
 
-impl Parts {
     /// Energies of a motion with this strain energy (J), those that the scheme balances beside included.
     pub(crate) fn energies_at(&mut self, attempt: &mut Attempt, end: End, strain: f64) -> Energies {
         let system = Arc::clone(&attempt.system);

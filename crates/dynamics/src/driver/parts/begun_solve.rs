@@ -51,9 +51,7 @@ impl Parts {
         }
         attempt.phases.sweeps += begin.elapsed();
     }
-}
 
-impl Parts {
     /// N x of the motion of the iteration without contact forces, of the row of that number in `rows`.
     ///
     /// `last`: the force of the row an iteration ago, N. What is added to the response of points on a rigid body, so that they share their force, is about

@@ -1,45 +1,14 @@
 //! Pieces that supports leave free in a static stage, and that contacts may hold: which they are, and what the iterations know of
 //! them. [`crate::driver::approach`] has what is done about them.
 
+use super::joined::{Group, Joined};
+use super::pieces::{Piece, Pieces};
+use crate::error::Error;
+use crate::system::System;
+use carom_contact::Target;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
-
-use carom_contact::Target;
-
-use super::Parts;
-use super::joined::{Group, Joined};
-use super::pieces::{Piece, Pieces};
-use super::rigid::Rigid;
-use crate::driver::attempt::Attempt;
-use crate::error::Error;
-use crate::system::System;
-
-impl Parts {
-    /// Adds to x what finite turns of the pieces have beyond the linear motion `share` dx from `before`.
-    pub(crate) fn turn(&self, attempt: &mut Attempt, share: f64) {
-        let system = Arc::clone(&attempt.system);
-        let mut places = vec![0.0; attempt.vectors.x.len()];
-        let motion = &attempt.state.motion;
-        attempt.maps.whole(
-            |map| map.displacement,
-            motion,
-            [&attempt.vectors.before, &attempt.vectors.push],
-            &mut places,
-        );
-        let pieces = Arc::clone(&self.floating.pieces);
-        let rigid = Rigid::new(
-            &system,
-            &pieces,
-            (&places, Some(&attempt.state.motion.frames)),
-        );
-        let mut c = rigid.nearest(&attempt.vectors.dx);
-        c.iter_mut().for_each(|c| *c *= share);
-        for (i, u) in rigid.arc(&c) {
-            attempt.vectors.x[i] += u;
-        }
-    }
-}
 
 /// σ, unless the matrix asks for more.
 pub(crate) const WEIGHT: f64 = 1e-6;

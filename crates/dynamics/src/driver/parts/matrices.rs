@@ -3,7 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-
 use super::Parts;
 use crate::driver::attempt::Attempt;
 use crate::error::Error;

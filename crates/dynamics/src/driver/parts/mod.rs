@@ -1,5 +1,6 @@
 //! Connected parts: matrices and factors, forces and histories of the bodies, residual and iterations.
 
+pub(crate) mod approach;
 pub(crate) mod balance;
 pub(crate) mod begun_solve;
 pub(crate) mod direct;
@@ -36,13 +37,6 @@ use floating::Floating;
 use mixing::{Carried, Mixing, Refined};
 use pace::{Pace, Squares};
 
-impl Parts {
-    /// Whether pieces float in the attempt under way.
-    pub(crate) fn floats(&self, attempt: &Attempt) -> bool {
-        attempt.maps.is_static() && !self.floating.pieces.is_empty()
-    }
-}
-
 /// Connected parts: matrices and factors, forces and histories of the bodies, residual and iterations.
 pub(crate) struct Parts {
     pub(crate) effective: Effective,
@@ -67,6 +61,11 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
+    /// Whether pieces float in the attempt under way.
+    pub(crate) fn floats(&self, attempt: &Attempt) -> bool {
+        attempt.maps.is_static() && !self.floating.pieces.is_empty()
+    }
+
     /// Those of a system.
     ///
     /// # Errors
@@ -88,9 +87,7 @@ impl Parts {
             left_over: 0.0,
         })
     }
-}
 
-impl Parts {
     /// Internal forces and histories of the end, at the nodes of this rank.
     pub(crate) fn forces_on_ranks(
         &mut self,

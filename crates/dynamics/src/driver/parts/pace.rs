@@ -1,6 +1,5 @@
 //! How the iterations of a step go, and the sizes of their forces.
 
-
 /// How fast the iterations go.
 #[derive(Default)]
 pub(crate) struct Pace {

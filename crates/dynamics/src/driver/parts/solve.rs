@@ -1,8 +1,5 @@
 //! The pace of the iterations of a step.
 
-
-use rayon::prelude::*;
-
 use super::Parts;
 use crate::driver::attempt::Attempt;
 use crate::driver::attempt::critical::PART;
@@ -46,12 +43,7 @@ impl Parts {
         );
         renewed
     }
-}
 
-/// Imbalance of the last pass over that of the first one, and over what the iteration will leave.
-const LEFT: f64 = 0.1;
-
-impl Parts {
     /// Whether it may be, by what the step has beside bodies and contacts.
     pub(crate) fn may_refine(&self, attempt: &Attempt) -> bool {
         !self.floats(attempt) && !attempt.has_links() && attempt.vectors.push.is_empty()
@@ -67,9 +59,7 @@ impl Parts {
         let tolerance = attempt.system.nonlinear.iteration.tolerance;
         f64::max(LEFT * first.min(bodies), WITHIN * tolerance)
     }
-}
 
-impl Parts {
     /// Drops an attempt of `dt` (s) in which bulk viscosity was stronger than its size is stable with: the impact began in it, of which
     /// the step before did not know.
     ///
@@ -90,3 +80,6 @@ impl Parts {
         Ok(())
     }
 }
+
+/// Imbalance of the last pass over that of the first one, and over what the iteration will leave.
+const LEFT: f64 = 0.1;

@@ -2,8 +2,6 @@
 
 pub(crate) mod shared_looks;
 
-
-
 use crate::shared::Shared;
 
 /// What this process has of a run that several compute.

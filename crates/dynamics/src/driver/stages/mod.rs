@@ -4,7 +4,6 @@ pub(crate) mod impulse;
 pub(crate) mod predictor;
 pub(crate) mod projection;
 
-
 use carom_system::ContactPair;
 
 use crate::driver::attempt::Attempt;
@@ -14,6 +13,15 @@ use crate::error::Error;
 use crate::system::System;
 use impulse::Impulses;
 
+/// Stages of a step with the mass alone: impulses of contact points, what a predictor and a projection change.
+pub(crate) struct Stages {
+    /// Solver of the stages with the mass alone; none where there is no such stage.
+    pub(crate) impulses: Option<Impulses>,
+    pub(crate) projected: Projected,
+    pub(crate) predictor: Predictor,
+    pub(crate) restoring: Restoring,
+}
+
 impl Stages {
     /// Whether all candidates are one problem, whatever they share: where links, weak forms or the mass couple them besides.
     pub(crate) fn is_one_group(&self, contacts: &Contacts, attempt: &Attempt) -> bool {
@@ -21,9 +29,7 @@ impl Stages {
             self.impulses.is_some() && sums_compliances(&attempt.system, attempt.maps.first());
         sums || attempt.has_links() || !contacts.weak.none()
     }
-}
 
-impl Stages {
     /// Nᵀ P + Tᵀ t of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
     /// uses it.
     pub(crate) fn spread(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
@@ -48,9 +54,7 @@ impl Stages {
             };
         }
     }
-}
 
-impl Stages {
     /// Gap of a point at the end of the step without its forces, m.
     pub(crate) fn free_gap(&self, contacts: &Contacts, attempt: &Attempt, point: usize) -> f64 {
         if let Some(gap) = self.predictor.gap(point) {
@@ -61,18 +65,7 @@ impl Stages {
             Err(_) => attempt.next.interface.gap[point],
         }
     }
-}
 
-/// Stages of a step with the mass alone: impulses of contact points, what a predictor and a projection change.
-pub(crate) struct Stages {
-    /// Solver of the stages with the mass alone; none where there is no such stage.
-    pub(crate) impulses: Option<Impulses>,
-    pub(crate) projected: Projected,
-    pub(crate) predictor: Predictor,
-    pub(crate) restoring: Restoring,
-}
-
-impl Stages {
     /// Those of a system, which is `released` in the dynamics.
     ///
     /// # Errors
