@@ -8,10 +8,10 @@ impl Driver {
     /// before.
     pub(super) fn look_ahead(&mut self) -> Result<(), Error> {
         self.renew()?;
-        (self.parts.pace.age, self.parts.pace.made) = (1, 0);
+        self.parts.pace_mut().begin(1, 0);
         let motion = &self.attempt.state.motion;
         let vectors = &mut self.attempt.vectors;
-        let residual = match self.links.force.is_empty() {
+        let residual = match self.links.force().is_empty() {
             true => &vectors.residual,
             false => &vectors.unlinked,
         };

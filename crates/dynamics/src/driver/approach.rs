@@ -45,7 +45,7 @@ impl Driver {
     pub(super) fn approach(&mut self, scale: f64) -> Result<bool, Error> {
         let (system, pieces) = (
             Arc::clone(&self.attempt.system),
-            Arc::clone(&self.parts.floating.pieces),
+            Arc::clone(self.parts.floating().pieces()),
         );
         let rigid = Rigid::new(
             &system,
@@ -57,7 +57,7 @@ impl Driver {
         );
         let Some(c) = self.certain_load(&rigid, scale) else {
             return match self.contacts.tips(&mut self.parts, &self.attempt, &rigid) {
-                true => Err(self.attempt.unheld(&rigid, &self.parts.floating.carried)),
+                true => Err(self.attempt.unheld(&rigid, &self.parts.floating().carried)),
                 false => Ok(false),
             };
         };
@@ -74,7 +74,7 @@ impl Driver {
                 self.attempt.vectors.x[i] += u;
             }
         }
-        self.parts.floating.load.clear();
+        self.parts.floating_mut().load.clear();
         self.evaluate(false)?;
         self.contacts.pair(&mut self.attempt, false);
         Ok(true)
@@ -83,13 +83,13 @@ impl Driver {
     /// Loads along rigid motions that nothing holds, as far as they are more than the iteration's; none within the tolerance.
     fn certain_load(&mut self, rigid: &Rigid, scale: f64) -> Option<Vec<f64>> {
         let mut c = self.unheld_load(rigid);
-        let before = std::mem::replace(&mut self.parts.floating.load, c.clone());
+        let before = std::mem::replace(&mut self.parts.floating_mut().load, c.clone());
         let change = before.iter().zip(&c).map(|(before, c)| c - before);
         let change: Vec<f64> = change.collect();
         let steady = !before.is_empty() && norm(&change) <= STEADY * norm(&c);
         let grounded = self.contacts.grounded(&self.parts, &self.attempt);
         if !grounded.is_empty() {
-            self.parts.floating.carried.clone_from(&c);
+            self.parts.floating_mut().carried.clone_from(&c);
         }
         if !steady {
             for piece in grounded {
@@ -108,7 +108,7 @@ impl Driver {
         if self.parts.floats(&self.attempt) {
             let rigid = Rigid::new(
                 system,
-                &self.parts.floating.pieces,
+                self.parts.floating().pieces(),
                 (
                     &self.attempt.places(),
                     Some(&self.attempt.state.motion.frames),
@@ -126,11 +126,11 @@ impl Driver {
                     .way_to_contact(&self.attempt, &rigid, &c)
                     .is_none()
             };
-            if norm(&loose) > self.parts.left_over || free() {
+            if norm(&loose) > self.parts.left_over() || free() {
                 // what fell off is named by how it left its contact
-                return match self.parts.floating.carried.is_empty() {
+                return match self.parts.floating().carried.is_empty() {
                     true => self.attempt.unheld(&rigid, &c),
-                    false => self.attempt.unheld(&rigid, &self.parts.floating.carried),
+                    false => self.attempt.unheld(&rigid, &self.parts.floating().carried),
                 };
             }
         }
@@ -152,7 +152,7 @@ impl Driver {
     pub(super) fn restrain(&mut self) -> bool {
         let mut shortened = false;
         let system = Arc::clone(&self.attempt.system);
-        let pieces = Arc::clone(&self.parts.floating.pieces);
+        let pieces = Arc::clone(self.parts.floating().pieces());
         let rigid = Rigid::new(
             &system,
             &pieces,
@@ -163,7 +163,7 @@ impl Driver {
         );
         let mut c = rigid.nearest(&self.attempt.vectors.dx);
         self.held(&rigid).take_from(&mut c);
-        for (piece, size) in self.parts.floating.sizes.iter().enumerate() {
+        for (piece, size) in self.parts.floating().sizes.iter().enumerate() {
             let reach = rigid.reach(piece, &c);
             let beyond = (1.0 - REACH * size / reach.max(f64::MIN_POSITIVE)).max(0.0);
             shortened |= beyond > 0.0;
@@ -182,7 +182,7 @@ impl Driver {
     /// What supports, springs, constraints and contacts that carry a force hold of the rigid motions.
     fn held(&self, rigid: &Rigid) -> Span {
         let mut held = Span::default();
-        for i in self.parts.floating.pieces.unknowns() {
+        for i in self.parts.floating().pieces.unknowns() {
             if self.attempt.system.fixed[i] {
                 held.add(rigid.of([(i, 1.0)]));
             }
@@ -195,13 +195,13 @@ impl Driver {
                 held.add(rigid.row(row.iter().copied()));
             });
         }
-        for row in self.links.rows.iter() {
+        for row in self.links.rows().iter() {
             held.add(rigid.row(row.iter().map(|&(i, c)| (i as usize, c))));
         }
-        let tangents = &self.contacts.pairing.tangents[..self.attempt.system.tangents()];
+        let tangents = self.contacts.tangent_rows(&self.attempt);
         for point in self.attempt.carrying() {
-            held.add(rigid.contact_row(&self.contacts.pairing.rows, point));
-            if self.contacts.slips.get(point) == Some(&Slip::Stick) {
+            held.add(rigid.contact_row(self.contacts.normal_rows(), point));
+            if self.contacts.slips().get(point) == Some(&Slip::Stick) {
                 for rows in tangents {
                     held.add(rigid.contact_row(rows, point));
                 }

@@ -16,8 +16,8 @@ impl Driver {
     }
 
     fn attempt_to_the_end(&mut self, dt: f64, next: f64) -> Result<(), Error> {
-        (self.contacts.failed, self.contacts.failed_friction) = (None, None);
-        self.parts.effective.return_to_iterations();
+        self.contacts.forget_failures();
+        self.parts.return_to_iterations();
         self.contacts.renew_targets(&self.attempt);
         self.attempt.hide_followed();
         self.contacts.size(&mut self.attempt, dt, next);
@@ -39,7 +39,7 @@ impl Driver {
         }
         self.leave_direct();
         self.attempt.vectors.make_room(&self.attempt.state.motion);
-        if !self.parts.prepared {
+        if !self.parts.is_prepared() {
             self.stages
                 .project_predictor(&mut self.contacts, &mut self.attempt)?;
         }
@@ -72,9 +72,9 @@ impl Driver {
         if !self.balances.find_jump(&self.attempt)? {
             return attempt(self);
         }
-        self.balances.jump.exchange(&mut self.attempt.state.motion);
+        self.balances.exchange_jump(&mut self.attempt.state.motion);
         let outcome = attempt(self);
-        self.balances.jump.exchange(&mut self.attempt.state.motion);
+        self.balances.exchange_jump(&mut self.attempt.state.motion);
         outcome
     }
 }

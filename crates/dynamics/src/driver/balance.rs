@@ -51,7 +51,8 @@ impl Driver {
         new.history.copy_from_slice(&self.attempt.vectors.history);
         new.contact_force
             .copy_from_slice(&self.attempt.vectors.contact);
-        new.link_force.clone_from(&self.links.force);
+        new.link_force.clear();
+        new.link_force.extend_from_slice(self.links.force());
         self.attempt.keep_bolts();
         self.contacts.end_interface(&mut self.attempt);
         self.contacts.crush(&mut self.attempt);

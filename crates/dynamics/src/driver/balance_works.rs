@@ -26,10 +26,10 @@ impl Driver {
         self.hold_forces(&weights);
         let worked = self
             .balances
-            .work(&self.attempt, &self.links.force, &weights);
+            .work(&self.attempt, self.links.force(), &weights);
         let counted = self.attempt.counted_work(worked.contact, &weights);
         let start = &self.attempt.state.ledger.balance;
-        let (taken, jump) = (&self.parts.stored, &self.balances.jump);
+        let (taken, jump) = (self.parts.stored(), self.balances.jump());
         // what supports that jump give is no inertia of the step
         let gained = energies.kinetic - start.kinetic - jump.work;
         let stored = energies.strain - start.strain + taken.hardening - start.hardening;
@@ -42,9 +42,14 @@ impl Driver {
         let tolerated = self.parts.tolerated(&self.attempt);
         self.balances.report_reactions(&self.attempt, &weights);
         self.balances
-            .keep_forces(&mut self.attempt, &self.links.force, &weights);
-        self.balances.exchange(&mut self.attempt, &self.links.force);
-        let (maps, taken, jump) = (&self.attempt.maps, &self.parts.stored, &self.balances.jump);
+            .keep_forces(&mut self.attempt, self.links.force(), &weights);
+        self.balances
+            .exchange(&mut self.attempt, self.links.force());
+        let (maps, taken, jump) = (
+            &self.attempt.maps,
+            self.parts.stored(),
+            self.balances.jump(),
+        );
         let one = Impulse::weights(0.0, 1.0);
         let [impulse, contact_impulse] = match self.attempt.is_plain() || maps.is_static() {
             true => [&one, &one],
@@ -85,7 +90,7 @@ impl Driver {
     /// Forces of supports and springs in the balance, and the inertia without what contact forces give by themselves.
     fn hold_forces(&mut self, weights: &Weights) {
         let system = Arc::clone(&self.attempt.system);
-        let works = &mut self.balances.works;
+        let works = self.balances.works_mut();
         self.attempt.balanced_springs(&mut works.springs);
         let factor = self.attempt.contact_factor();
         let (maps, vectors) = (&self.attempt.maps, &mut self.attempt.vectors);
@@ -95,6 +100,6 @@ impl Driver {
                 *f -= push * c;
             }
         }
-        works.hold(&system, vectors, (&self.links.force, factor, push));
+        works.hold(&system, vectors, (self.links.force(), factor, push));
     }
 }

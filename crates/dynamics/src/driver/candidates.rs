@@ -57,7 +57,7 @@ impl Driver {
     /// Forces of the iteration without those of contacts, into `work`.
     fn load_iteration(&mut self) {
         self.links.begin_link_iteration();
-        self.contacts.rebound.begin();
+        self.contacts.rebound_mut().begin();
         let jumps = self.attempt.jumps();
         let vectors = &mut self.attempt.vectors;
         vectors.work.copy_from_slice(&vectors.residual);

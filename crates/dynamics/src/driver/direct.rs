@@ -4,6 +4,7 @@
 //! end are written where they stay, and one pass ([`Update`]) finds accelerations, velocities and all terms of the balances. Contact
 //! forces are those of the interface problem of the other steps; where no point may carry one, it is not looked at.
 
+use super::attempt::Attempt;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -22,53 +23,50 @@ impl Driver {
             _ => false,
         };
         leapfrog
-            && self.explicit.direct.is_some()
+            && self.explicit.direct().is_some()
             && !self.attempt.maps.is_static()
-            && self.stages.impulses.is_none()
-            && (self.attempt.has_links() || self.links.force.is_empty())
+            && !self.stages.are_any()
+            && (self.attempt.has_links() || self.links.force().is_empty())
     }
 
     /// Whether the motion of the attempt is known to be finite without a look at it.
     pub(super) fn is_known_finite(&self) -> bool {
-        self.explicit
-            .direct
-            .as_ref()
-            .is_some_and(|direct| direct.finite)
+        self.explicit.direct().is_some_and(|direct| direct.finite)
     }
 
     /// Tells that an attempt of another kind begins.
     pub(super) fn leave_direct(&mut self) {
-        self.contacts.passage.forget();
-        if let Some(mut direct) = self.explicit.direct.take() {
+        self.contacts.forget_passages();
+        if let Some(mut direct) = self.explicit.take() {
             self.contacts.forget_step(&mut direct);
-            self.explicit.direct = Some(direct);
+            self.explicit.keep(direct);
         } else {
-            self.contacts.active.leave();
+            self.contacts.leave_active();
         }
     }
 
     /// Takes the attempt.
     pub(super) fn explicit_step(&mut self) -> Result<(), Error> {
-        let Some(mut direct) = self.explicit.direct.take() else {
+        let Some(mut direct) = self.explicit.take() else {
             return Ok(());
         };
         let clean = std::mem::take(&mut direct.clean);
         direct.finite = false;
-        let taken = match self.ranks.shared.take() {
+        let taken = match self.ranks.take() {
             None => self.explicit_pass(&mut direct, clean),
             Some(mut shared) => {
                 let taken = self.step_on_ranks(&mut shared, &mut direct, clean);
-                self.ranks.shared = Some(shared);
+                self.ranks.keep(shared);
                 taken
             }
         };
-        self.explicit.direct = Some(direct);
+        self.explicit.keep(direct);
         taken
     }
 
     fn explicit_pass(&mut self, direct: &mut Direct, clean: bool) -> Result<(), Error> {
         let (begin, before) = (Instant::now(), self.attempt.phases);
-        if !self.contacts.weak.none() {
+        if !self.contacts.weak().none() {
             self.parts.take_matrices(&mut self.attempt)?;
         }
         self.parts
@@ -105,23 +103,24 @@ impl Driver {
     pub(super) fn touch(&mut self, direct: &mut Direct, loads: Loads) -> Result<(), Error> {
         self.attempt.vectors.jumps = false;
         if self.attempt.system.contacts.is_empty() {
-            self.contacts.candidates.clear();
+            self.contacts.forget_candidates();
             return Ok(());
         }
         self.attempt.vectors.ahead.clear();
         self.contacts.pair_near(&mut self.attempt);
         self.contacts
             .choose_candidates(&self.parts, &mut self.attempt);
-        if self.contacts.candidates.is_empty() {
+        if self.contacts.candidates().is_empty() {
             self.contacts.release(&mut self.attempt);
             return Ok(());
         }
-        match self.contacts.weak.none() {
+        match self.contacts.weak().none() {
             true => {
-                let free = |driver: &Driver, i: usize| {
-                    driver.attempt.left(loads, i) / driver.attempt.system.mass.lumped[i]
+                let free = |attempt: &Attempt, i: usize| {
+                    attempt.left(loads, i) / attempt.system.mass.lumped[i]
                 };
-                self.solve_apart(&mut direct.apart, free)?;
+                self.contacts
+                    .solve_apart(&mut self.attempt, &mut direct.apart, free)?;
             }
             false => {
                 self.contacts.stack(&self.attempt);
@@ -143,7 +142,9 @@ impl Driver {
         let means = [map.impulse.old, map.impulse.new];
         let moves = system.is_nonlinear();
         let shapes = &self.attempt.state.shapes.bodies;
-        self.explicit.rates.refer(&system.part_of_body, shapes);
+        self.explicit
+            .rates_mut()
+            .refer(&system.part_of_body, shapes);
         let damped = self.attempt.has_forces_beside();
         let (old, new) = (&self.attempt.state.motion, &mut self.attempt.next.motion);
         let varying = &self.attempt.vectors.load[..];
@@ -166,7 +167,7 @@ impl Driver {
             u: &new.u,
             mass: &direct.mass,
             ahead: map.displacement,
-            reference: &self.explicit.rates.reference,
+            reference: &self.explicit.rates().reference,
             f: [&old.internal_force, &new.internal_force],
             v: &old.v,
             a: &old.a,

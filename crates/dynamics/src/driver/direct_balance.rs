@@ -38,7 +38,7 @@ impl Driver {
                 of_scheme: inertia * sums.acceleration[1],
             }
         };
-        let mut motions = std::mem::take(&mut self.balances.works.motions);
+        let mut motions = std::mem::take(&mut self.balances.works_mut().motions);
         motions.clear();
         motions.extend((0..direct.parts.len()).map(part));
         self.balances.add_to_assemblies(&mut self.attempt, motions);
@@ -55,11 +55,12 @@ impl Driver {
         let forces = [&old.link_force[..], &new.link_force];
         let links = direct.links.work(weights[0], forces, [&old.u, &new.u]);
         let link_norm = direct.links.norm(&new.link_force);
-        let of_contacts = self.contacts.sums.iter();
+        let of_contacts = self.contacts.sums().iter();
         let friction = -of_contacts.map(|of| of.report.friction_loss).sum::<f64>();
-        let obstacles = self.obstacle_work(&weights, &|contact| self.contacts.sums[contact].pushed);
+        let obstacles =
+            self.obstacle_work(&weights, &|contact| self.contacts.sums()[contact].pushed);
         let [inertia, internal, load, touch, beside] = sums.works;
-        let stored = self.parts.stored;
+        let stored = *self.parts.stored();
         let energies = Energies {
             kinetic: 0.5 * sums.velocity,
             strain: stored.strain,
@@ -82,8 +83,10 @@ impl Driver {
         let mut nonlinear = None;
         if system.is_nonlinear() {
             dissipation = inertia - gained + internal - kept - stored.dissipated - stored.viscous;
-            self.parts.left_over = self.attempt.system.nonlinear.iteration.tolerance
-                * scale(sums, self.attempt.dt).max(link_norm);
+            self.parts.leave_over(
+                self.attempt.system.nonlinear.iteration.tolerance
+                    * scale(sums, self.attempt.dt).max(link_norm),
+            );
             let nodes = system.nodes_of_whole as f64;
             nonlinear = Some(NonlinearTerms {
                 work_supports: 0.0,
@@ -96,8 +99,8 @@ impl Driver {
                 hardening: stored.hardening,
                 hourglass: stored.hourglass,
                 tolerated: Tolerated {
-                    energy: self.parts.left_over * sums.way.sqrt(),
-                    momentum: self.parts.left_over * nodes.sqrt() * self.attempt.dt,
+                    energy: self.parts.left_over() * sums.way.sqrt(),
+                    momentum: self.parts.left_over() * nodes.sqrt() * self.attempt.dt,
                 },
             });
         }

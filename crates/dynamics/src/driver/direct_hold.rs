@@ -63,7 +63,7 @@ impl Driver {
             };
             row.iter().map(term).sum::<f64>() / -known.x
         };
-        let now = &mut self.links.multipliers.now;
+        let now = self.links.multipliers_mut();
         now.clear();
         now.extend(system.links.rows.iter().map(of_row));
         condensed.solve(now);

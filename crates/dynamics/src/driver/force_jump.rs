@@ -32,13 +32,9 @@ impl Driver {
     /// # Errors
     /// A mass that is not positive definite.
     pub fn jump_link_force(&mut self, change: &[f64]) -> Result<(), Error> {
-        self.parts.prepared = false;
-        let mut jump = std::mem::take(&mut self.links.jump);
-        let solved = jump.solve(&self.attempt.system, change);
-        if solved.is_ok() {
-            self.attempt.take_jump(change, &jump);
-        }
-        self.links.jump = jump;
-        solved
+        self.parts.set_prepared(false);
+        let jump = self.links.solve_jump(&self.attempt.system, change)?;
+        self.attempt.take_jump(change, jump);
+        Ok(())
     }
 }

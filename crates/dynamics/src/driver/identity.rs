@@ -8,7 +8,6 @@ use carom_algebra::reduce::dot;
 use super::Driver;
 use super::attempt::identity::{End, squares};
 use super::attempt::vectors::Vectors;
-use super::balances::reported;
 use crate::ledger::reactions;
 use crate::resultant::Resultant;
 use crate::step_forces::OutsideForces;
@@ -21,7 +20,7 @@ impl Driver {
         let identity = self.attempt.identity.unwrap_or_default();
         let energies =
             self.parts
-                .energies_at(&mut self.attempt, End::Finish, self.parts.stored.strain);
+                .energies_at(&mut self.attempt, End::Finish, self.parts.stored().strain);
         let filtered = self.parts.filtered(&mut self.attempt, &identity);
         let [supports, held] = self.reactions();
         let stage = self.stages.predictor_loss(&self.contacts, &self.attempt);
@@ -51,7 +50,7 @@ impl Driver {
         }
         let work_contact = weights.of([old, new], travel);
         let work_loads = dot(travel, &system.load);
-        let given = &mut self.balances.works.given;
+        let given = &mut self.balances.works_mut().given;
         given.clear();
         given.extend(system.parts.iter().map(|part| {
             let unknowns = part.clone();
@@ -128,9 +127,8 @@ impl Driver {
         let apart = self.attempt.maps.first().impulse != self.attempt.maps.first().contact_impulse;
         let held = |i: usize| if apart { new.contact_force[i] } else { 0.0 };
         let at = (&self.attempt.state.motion.frames[..], None);
-        reported::write(&mut self.balances.reactions, &system, at, |i| {
-            work[i] - held(i)
-        });
+        self.balances
+            .write_reactions(&system, at, |i| work[i] - held(i));
         if !apart {
             return [supports, Resultant::default()];
         }

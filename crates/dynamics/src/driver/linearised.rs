@@ -70,7 +70,7 @@ impl Driver {
         let keeps = self.attempt.system.scheme.get().keeps_acceleration();
         self.parts.take_matrices(&mut self.attempt)?;
         let linear = self.attempt.system.bodies.iter().all(Body::is_linear);
-        let own = match linear && !self.parts.effective.iterates() {
+        let own = match linear && !self.parts.effective().iterates() {
             true => None,
             false => {
                 let stiffness = self.attempt.tangent_at(origin)?;
@@ -105,8 +105,8 @@ impl Driver {
                     force[dof as usize] += c * multipliers[*row as usize];
                 }
             }
-            self.links.jump.solve(&system, &force)?;
-            zone.motion.a.copy_from_slice(&self.links.jump.given);
+            let jump = self.links.solve_jump(&system, &force)?;
+            zone.motion.a.copy_from_slice(&jump.given);
         }
         if let Some((mut operators, stiffness)) = zone.own.take() {
             let forces = &mut |u: &[f64], f: &mut [f64]| stiffness.multiply(u, f);
@@ -120,10 +120,9 @@ impl Driver {
             return Ok(());
         }
         self.parts.take_matrices(&mut self.attempt)?;
-        let Some((operators, _)) = self.parts.effective.both() else {
+        let Some((operators, scratch)) = self.parts.operators_and_scratch() else {
             return Ok(());
         };
-        let scratch = &mut self.parts.scratch;
         let mut of = Linearised {
             system: &system,
             operators,

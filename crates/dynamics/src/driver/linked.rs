@@ -17,43 +17,28 @@ use crate::system::{LinkRow, on};
 impl Driver {
     /// Makes the solver take forces of links from its next start on, which is with this force (N).
     pub fn link(&mut self, force: &[f64]) {
-        self.links.force = force.to_vec();
+        self.links.set_force(force.to_vec());
     }
 
     /// Makes the solver forget links until its next `link`.
     pub fn unlink(&mut self) {
-        self.links.force.clear();
+        self.links.forget_force();
     }
 
     /// Sets Cᵀ Λ of the step, N.
     pub fn set_link_force(&mut self, rows: &[(u32, LinkRow)], multipliers: &[f64]) {
-        self.links.force.fill(0.0);
-        for (row, terms) in rows {
-            for &(dof, c) in terms {
-                self.links.force[dof as usize] += c * multipliers[*row as usize];
-            }
-        }
+        self.links.set_row_forces(rows, multipliers);
     }
 
     /// Sets the force of the links, given term by term in the order of the rows, N.
     pub fn set_link_terms(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
-        self.links.force.fill(0.0);
-        let terms = rows.iter().flat_map(|(_, terms)| terms);
-        for ((dof, _), force) in terms.zip(forces) {
-            self.links.force[*dof as usize] += force;
-        }
+        self.links.set_term_forces(rows, forces);
     }
 
     /// Adds forces of other rows to those of the links, N: of contacts between zones.
     pub fn add_link_rows(&mut self, rows: &[(u32, LinkRow)], forces: &[f64]) {
-        if self.links.force.is_empty() {
-            self.links.force.resize(self.attempt.system.unknowns(), 0.0);
-        }
-        for (row, terms) in rows {
-            for &(dof, c) in terms {
-                self.links.force[dof as usize] += c * forces[*row as usize];
-            }
-        }
+        self.links.make_room(self.attempt.system.unknowns());
+        self.links.add_row_forces(rows, forces);
     }
 
     /// Computes the next state from the state, with the forces of links as they stand.
@@ -62,7 +47,7 @@ impl Driver {
     /// As [`Driver::step`]; a step of a zone is not halved.
     pub fn complete(&mut self) -> Result<(), Error> {
         self.report.attempts = 1;
-        if self.parts.prepared {
+        if self.parts.is_prepared() {
             self.attempt.notices = Notices::default();
             let outcome = self.solve_step().and_then(|()| self.attempt.check_finite());
             self.attempt.unless_interrupted(outcome)?;
@@ -78,8 +63,8 @@ impl Driver {
         self.attempt.next.step = step + 1;
         self.attempt.next.time = control.instant(*step, *time, self.attempt.dt);
         self.attempt.next.control = *control;
-        self.attempt.next.control.pace = self.parts.pace.fresh;
-        self.attempt.next.control.compression = self.parts.stored.compression;
+        self.attempt.next.control.pace = self.parts.pace().fresh;
+        self.attempt.next.control.compression = self.parts.stored().compression;
         Ok(())
     }
 
@@ -99,13 +84,13 @@ impl Driver {
 
     /// Makes the state that of an earlier instant.
     pub fn go_back(&mut self, state: &State) {
-        self.parts.prepared = false;
+        self.parts.set_prepared(false);
         self.attempt.state.clone_from(state);
     }
 
     /// Makes `dt` the size of the next steps, of an explicit scheme before one of the size `next` (both s).
     pub fn resize(&mut self, dt: f64, next: f64) {
-        self.parts.prepared = false;
+        self.parts.set_prepared(false);
         self.ahead = next;
         self.contacts.size(&mut self.attempt, dt, next);
     }
@@ -185,8 +170,8 @@ impl Driver {
     /// # Errors
     /// As [`Driver::step`].
     pub fn prepare(&mut self) -> Result<(), Error> {
-        (self.contacts.failed, self.contacts.failed_friction) = (None, None);
-        self.parts.prepared = false;
+        self.contacts.forget_failures();
+        self.parts.set_prepared(false);
         self.begin_stage()?;
         let scheme = self.attempt.system.scheme.get();
         if !self.attempt.system.nonlinear.follows.is_empty() || scheme.projects_predictor() {
@@ -196,7 +181,7 @@ impl Driver {
         self.parts.take_matrices(&mut self.attempt)?;
         if self.contacts.is_affine(&self.parts) {
             self.begin_iterations(false)?;
-            self.parts.prepared = true;
+            self.parts.set_prepared(true);
         }
         self.attempt.count_contact(begin, before);
         Ok(())

@@ -14,11 +14,11 @@ impl Driver {
     /// longer, and the answer is the same. A first guess that compresses what is nearly incompressible has pressures of many
     /// times the shear modulus, whose stiffness is negative across them; the step itself has nothing of them.
     pub(super) fn renew(&mut self) -> Result<(), Error> {
-        if !self.parts.effective.iterates() {
+        if !self.parts.effective().iterates() {
             return Ok(());
         }
         let begin = Instant::now();
-        self.parts.pace.is_sized = false;
+        self.parts.pace_mut().is_sized = false;
         let system = Arc::clone(&self.attempt.system);
         let motion = &self.attempt.state.motion;
         self.attempt.maps.whole(
@@ -27,10 +27,8 @@ impl Driver {
             [&self.attempt.vectors.x, &self.attempt.vectors.push],
             &mut self.attempt.vectors.place,
         );
-        let floats = match self.parts.floats(&self.attempt) {
-            true => Some(&*self.parts.floating.pieces),
-            false => None,
-        };
+        let pieces = Arc::clone(self.parts.floating().pieces());
+        let floats = self.parts.floats(&self.attempt).then_some(&*pieces);
         let mut at = At {
             maps: &self.attempt.maps,
             dt: self.attempt.dt,
@@ -41,8 +39,8 @@ impl Driver {
             from: self.attempt.between().then_some(&motion.u[..]),
             frames: &motion.frames,
             history: &motion.history,
-            rows: &self.links.rows,
-            proximal: (floats, self.parts.floating.weight),
+            rows: self.links.rows(),
+            proximal: (floats, self.parts.floating().weight),
             without: self.attempt.stiffness_by_load(),
             whole: self.contacts.leaves_out(&self.attempt),
             apart: self.contacts.leaves_out(&self.attempt) && self.parts.may_refine(&self.attempt),
@@ -52,23 +50,23 @@ impl Driver {
             forces.map(|(point, force)| force * self.contacts.turning(system.contact_of(point)));
         let mut turning = Turning {
             forces: turned.collect(),
-            pairing: &self.contacts.pairing,
+            pairing: self.contacts.pairing(),
             factor: self.attempt.maps.contact(),
         };
-        let mut made = self.parts.effective.renew(&system, &at, &turning);
+        let mut made = self.parts.effective_mut().renew(&system, &at, &turning);
         if made.is_err() && turning.forces.iter().any(|force| *force != 0.0) {
             turning.forces.fill(0.0);
-            made = self.parts.effective.renew(&system, &at, &turning);
+            made = self.parts.effective_mut().renew(&system, &at, &turning);
         }
         if made.is_err() && !self.attempt.maps.is_static() {
             at.u = &motion.u;
-            made = self.parts.effective.renew(&system, &at, &turning);
+            made = self.parts.effective_mut().renew(&system, &at, &turning);
         }
         while made.is_err() && floats.is_some() && at.proximal.1 < LARGEST {
             at.proximal.1 *= HEAVIER;
-            made = self.parts.effective.renew(&system, &at, &turning);
+            made = self.parts.effective_mut().renew(&system, &at, &turning);
         }
-        self.parts.floating.weight = at.proximal.1;
+        self.parts.floating_mut().weight = at.proximal.1;
         self.attempt.phases.factorisation += begin.elapsed();
         made
     }

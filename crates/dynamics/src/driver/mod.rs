@@ -13,7 +13,6 @@
 //! with the same bits.
 
 mod ahead;
-mod apart;
 mod approach;
 pub(crate) mod attempt;
 mod attempts;
@@ -47,7 +46,6 @@ mod rebounding;
 pub(crate) mod record;
 mod refine;
 mod residual;
-mod restoring;
 mod solve;
 mod stable;
 pub(crate) mod stages;
@@ -122,7 +120,7 @@ impl Driver {
 
     /// Relative residuals of the iterations of the last step.
     pub fn residuals(&self) -> &[f64] {
-        &self.parts.residuals
+        self.parts.residuals()
     }
 
     /// What the run cost so far.
@@ -135,16 +133,15 @@ impl Driver {
             .map(|b| b.cells().len())
             .sum();
         let mut costs = Costs {
-            factors: self.parts.effective.stats().cloned().collect(),
-            work: self.parts.effective.work(),
-            compliance_bytes: self.parts.effective.compliance_bytes()
+            factors: self.parts.effective().stats().cloned().collect(),
+            work: self.parts.effective().work(),
+            compliance_bytes: self.parts.effective().compliance_bytes()
                 + self
                     .explicit
-                    .direct
-                    .as_ref()
+                    .direct()
                     .map_or(0, |direct| direct.apart.bytes()),
-            force_sweeps: self.parts.force_sweeps,
-            element_updates: (self.parts.force_sweeps * elements) as u64,
+            force_sweeps: self.parts.force_sweeps(),
+            element_updates: (self.parts.force_sweeps() * elements) as u64,
             phases: self.attempt.phases,
             zones: Vec::new(),
         };
@@ -160,17 +157,10 @@ impl Driver {
     /// Ends a step early where this is set; it then fails with [`Error::Interrupted`]. Not on ranks, which all
     /// take the same steps: they end between two steps.
     pub fn heed(&mut self, interrupt: &Interrupt) {
-        if self.ranks.several {
+        if self.ranks.are_several() {
             return;
         }
         self.attempt.interrupt = interrupt.clone();
-        let Contacts {
-            solver,
-            group_solvers,
-            ..
-        } = &mut self.contacts;
-        std::iter::once(solver)
-            .chain(group_solvers)
-            .for_each(|solver| solver.heed(interrupt));
+        self.contacts.heed(interrupt);
     }
 }

@@ -14,8 +14,8 @@ impl Driver {
         self.stages.spread(&self.contacts, &mut self.attempt);
         // schemes in which forces give accelerations by themselves stand alone
         let part = self.attempt.maps.contact() / self.attempt.maps.link_weights(0)[1];
-        if let Some(stage) = &self.stages.impulses {
-            let changes = self.links.multipliers.change[1].iter_mut();
+        if let Some(stage) = self.stages.impulses() {
+            let changes = self.links.pushed_mut().iter_mut();
             changes
                 .zip(&stage.links)
                 .for_each(|(change, l)| *change -= part * l);
@@ -30,7 +30,8 @@ impl Driver {
         let system = Arc::clone(&self.attempt.system);
         let start = self.links.rows_before(&self.attempt);
         let (old, next) = (&self.attempt.state.links, &mut self.attempt.next.links);
-        next.multipliers.clone_from(&self.links.multipliers.now);
+        next.multipliers.clear();
+        next.multipliers.extend_from_slice(self.links.multipliers());
         next.mixed.clone_from(&old.mixed);
         next.works.clone_from(&old.works);
         let [before, after] = [&self.attempt.state.motion.u, &self.attempt.next.motion.u];
@@ -55,7 +56,7 @@ impl Driver {
                     // those of the rows at the start of the step, and at its end
                     let earlier = of_work.old * mixed + of_work.new * weights[0] * l;
                     let later = of_work.new * weights[1] * next.multipliers[row];
-                    let (terms, inner) = (&self.links.rows[row], system.links.inner_terms[row]);
+                    let (terms, inner) = (&self.links.rows()[row], system.links.inner_terms[row]);
                     let sides = [0..inner, inner..terms.len()];
                     for (work, side) in next.works[link].iter_mut().zip(sides) {
                         let side = side.filter(|&k| own(terms[k].0 as usize));
@@ -80,7 +81,7 @@ impl Driver {
         }
         // a projection after the step changes the forces that the next one begins with
         let next = &mut self.attempt.next.links;
-        for (row, more) in self.stages.projected.links.iter().enumerate() {
+        for (row, more) in self.stages.projected().links.iter().enumerate() {
             next.multipliers[row] += more;
             next.mixed.iter_mut().for_each(|mixed| mixed[row] += more);
         }

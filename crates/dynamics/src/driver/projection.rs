@@ -23,8 +23,8 @@ use crate::step_terms::Jump;
 impl Driver {
     /// Projects the end of the step if points of laws with projection have closed in it.
     pub(super) fn project(&mut self) -> Result<(), Error> {
-        self.stages.projected.clear();
-        if self.stages.impulses.is_none()
+        self.stages.forget_projected();
+        if !self.stages.are_any()
             || self.attempt.maps.is_static()
             || !self.stages.projected_points(&self.contacts, &self.attempt)
         {
@@ -46,11 +46,23 @@ impl Driver {
         Ok(())
     }
 
+    /// Gives the velocity back what the contact took, if the scheme does so.
+    pub(super) fn restore(&mut self) {
+        if !self.attempt.system.scheme.get().restores_contact_work()
+            || self.attempt.maps.is_static()
+        {
+            return;
+        }
+        if let Some(jump) = self.stages.restore(&self.contacts, &mut self.attempt) {
+            self.enter_jump(jump);
+        }
+    }
+
     /// Enters a jump of the motion after the step into the ledger.
     pub(super) fn enter_jump(&mut self, mut jump: Jump) {
         let system = Arc::clone(&self.attempt.system);
         let identity = self.attempt.identity_of_ledger();
-        let mut springs = std::mem::take(&mut self.balances.works.springs);
+        let mut springs = std::mem::take(&mut self.balances.works_mut().springs);
         springs.clear();
         if system.is_nonlinear() && system.has_springs {
             self.attempt
@@ -69,7 +81,7 @@ impl Driver {
             ..
         } = &mut self.attempt.vectors;
         let u = nonlinear.then_some(&new.u[..]);
-        let of = (self.parts.stored.strain, identity.inertia != 0.0, u);
+        let of = (self.parts.stored().strain, identity.inertia != 0.0, u);
         let energies = energies(&system, new, of, work);
         system.mass.multiply(&new.a, inertia);
         if nonlinear {
@@ -104,7 +116,7 @@ impl Driver {
             for (reaction, spring) in work.iter_mut().zip(&springs) {
                 *reaction -= spring;
             }
-            self.balances.works.springs = springs;
+            self.balances.works_mut().springs = springs;
         } else {
             reactions(&system, self.attempt.maps.first(), old, new, inertia, work);
             self.attempt.take_linear_springs();
@@ -117,7 +129,7 @@ impl Driver {
         jump.supports = Resultant::of(&system, work);
         let half = &mut self.attempt.vectors.half;
         half.fill(0.0);
-        add_all_forces(&system, &self.stages.projected.links, half);
+        add_all_forces(&system, &self.stages.projected().links, half);
         jump.links = Resultant::of(&system, half);
         self.attempt.next.ledger.jump(&identity, &energies, &jump);
     }

@@ -14,7 +14,7 @@ use super::Driver;
 use super::explicit::leapfrog::Direct;
 use crate::error::Error;
 use crate::march::{Going, Scope, Watched};
-use crate::shared::{Begin, InReach, Own, OwnElements, Shared, SharedNodes, Told, receive};
+use crate::shared::{Begin, InReach, OwnElements, Shared, SharedNodes, Told, receive};
 use crate::state::State;
 use crate::system::{Model, System};
 use crate::watch::{OfBody, is_due};
@@ -91,7 +91,7 @@ impl Driver {
         ranks: &Ranks,
     ) -> Result<Driver, Error> {
         let mut driver = Driver::from_saved(system, saved)?;
-        driver.parts.effective.share(ranks);
+        driver.parts.share(ranks);
         Ok(driver)
     }
 
@@ -111,7 +111,7 @@ impl Driver {
         let map = self.attempt.maps.first();
         let at_ends =
             |contact: usize| self.contacts.paired_at(contact).row(map) == map.displacement;
-        let in_reach = InReach::new(&system, &self.contacts.active.reaches, at_ends);
+        let in_reach = InReach::new(&system, &self.contacts.active().reaches, at_ends);
         let given = (in_reach, &self.attempt.state);
         let mut shared = Shared::new(&system, ranks, (watched, own), given);
         shared.take_looks(&system, &self.attempt.state.shapes.looks);
@@ -125,24 +125,23 @@ impl Driver {
                 *impulse = 0.0;
             }
         }
-        if let Some(mut direct) = self.explicit.direct.take() {
+        if let Some(mut direct) = self.explicit.take() {
             self.contacts
                 .take_homes(&self.attempt, &mut shared, &mut direct);
-            self.contacts.active.look_to(&shared.in_reach);
-            self.explicit.direct = Some(direct);
+            self.contacts.look_to(&shared.in_reach);
+            self.explicit.keep(direct);
         }
-        self.ranks.shared = Some(Box::new(shared));
-        self.ranks.several = true;
+        self.ranks.begin(shared);
     }
 
     /// Whether several ranks take the steps.
     pub(super) fn is_shared(&self) -> bool {
-        self.ranks.several
+        self.ranks.are_several()
     }
 
     /// Places of the elements that this rank computes among those of each body, ascending; none where ranks share no elements.
     pub fn own_elements(&self) -> Option<Vec<Vec<u32>>> {
-        let shared = self.ranks.shared.as_ref()?;
+        let shared = self.ranks.shared()?;
         let of_body = |shares: &[Share; 2]| {
             let mut places = shares.each_ref().map(Share::places).concat();
             places.sort_unstable();
@@ -153,12 +152,12 @@ impl Driver {
 
     /// What this rank has and sends; none of a run in one process.
     pub fn rank_share(&self) -> Option<RankShare> {
-        let shared = self.ranks.shared.as_ref()?;
+        let shared = self.ranks.shared()?;
         let elements = shared.bodies().flatten();
         Some(RankShare {
             elements: elements.map(|share| share.places().len()).sum(),
             nodes: shared.halo.present.len(),
-            points: self.contacts.active.own_points(),
+            points: self.contacts.active().own_points(),
             looked_points: shared.looked,
             contact_shares: shared.found_homes,
             halo_bytes: shared.halo.bytes(self.attempt.system.dim),
@@ -181,7 +180,7 @@ impl Driver {
                 self.contacts.take_homes(&self.attempt, shared, direct);
                 clean = false;
             }
-            self.contacts.active.look_to(&shared.in_reach);
+            self.contacts.look_to(&shared.in_reach);
         }
         self.parts
             .begin_explicit_pass(&mut self.attempt, direct, clean);
@@ -206,25 +205,25 @@ impl Driver {
             .report_supports(&self.attempt, loads, &|node| shared.halo.counts(node, rank));
         self.contacts.end_points(&mut self.attempt);
         self.report_own_contacts();
-        let mut contacts = std::mem::take(&mut self.contacts.sums);
-        let energies = (&mut self.parts.stored, &mut self.balances.reactions[..]);
+        let mut contacts = self.contacts.take_sums();
+        let energies = (self.parts.stored_mut(), self.balances.reactions_mut());
         let parts = &mut direct.parts[..];
         let told = Told {
             failed: failed.is_some(),
-            passes: match self.contacts.candidates.is_empty() {
+            passes: match self.contacts.candidates().is_empty() {
                 true => 0,
-                false => self.contacts.solver.passes,
+                false => self.contacts.passes(),
             },
         };
         let told = shared.sum_up(parts, energies, &mut contacts, &told);
         if shared.in_reach.travel(&self.attempt.system, &contacts) {
-            self.contacts.sums = contacts;
+            self.contacts.keep_sums(contacts);
             return self.step_on_ranks(shared, direct, false);
         }
         if told.failed {
             return Err(of_ranks(&shared.ranks, failed));
         }
-        self.contacts.solver.passes = told.passes;
+        self.contacts.set_passes(told.passes);
         let sums = direct.total(self.attempt.system.axisymmetric);
         self.know_end(&sums, direct);
         self.contacts.know_gaps(&mut self.attempt, &mut contacts);
@@ -240,7 +239,7 @@ impl Driver {
             ];
             shared.gather_velocities(dim, velocities);
         }
-        self.contacts.sums = contacts;
+        self.contacts.keep_sums(contacts);
         self.end_directly(&sums, direct);
         self.attempt.phases.balance += begin.elapsed();
         Ok(())
@@ -250,17 +249,7 @@ impl Driver {
     fn report_own_contacts(&mut self) {
         self.report_contacts();
         let map = self.attempt.maps.first();
-        for k in 0..self.contacts.sums.len() {
-            let in_steps = self.contacts.paired_at(k).row(map) == map.displacement;
-            let Own::Some(own) = self.contacts.active.own_of(k) else {
-                continue;
-            };
-            self.contacts.sums[k].motion = match (in_steps, own.nodes.is_empty()) {
-                (false, _) => f64::INFINITY,
-                (true, true) => 0.0,
-                (true, false) => self.contacts.search[k].motion(),
-            };
-        }
+        self.contacts.report_motions(map);
     }
 
     /// That no entry of the attempt that this rank has is infinite or no number, on any rank.
@@ -269,7 +258,7 @@ impl Driver {
     /// [`Error::NotFinite`].
     pub(super) fn check_finite_on_ranks(&self) -> Result<(), Error> {
         let found = self.attempt.check_finite();
-        let Some(shared) = &self.ranks.shared else {
+        let Some(shared) = self.ranks.shared() else {
             return found;
         };
         let text = found.err().map(|error| error.to_string());
@@ -281,7 +270,7 @@ impl Driver {
 
     /// See [`Stepper::agree`](crate::Stepper::agree).
     pub(super) fn agree_on_ranks(&mut self, own: Going) -> Going {
-        match &self.ranks.shared {
+        match self.ranks.shared() {
             Some(shared) => own.of_all(&shared.ranks),
             None => own,
         }
@@ -289,15 +278,14 @@ impl Driver {
 
     /// See [`Stepper::bring`](crate::Stepper::bring).
     pub(super) fn bring_on_ranks(&mut self, scope: Scope) {
-        let Some(mut shared) = self.ranks.shared.take() else {
+        let Some(mut shared) = self.ranks.take() else {
             return;
         };
         let (system, dim) = (Arc::clone(&self.attempt.system), self.attempt.system.dim);
         let step = self.attempt.state.step;
-        let asks = shared.is_first() && step > self.ranks.looked;
+        let asks = self.ranks.asks(step) && shared.is_first();
         let is_due = |assembly: usize| asks && is_due(&self.attempt.state, step, assembly);
         let due: Vec<bool> = (0..system.assemblies.all.len()).map(is_due).collect();
-        self.ranks.looked = step;
         // the numbers of the looks at each body, zero where there is none: assemblies of a rank are of its part of the model
         let look = |body: usize| {
             let assembly = system.assemblies.of_part[system.part_of_body[body]];
@@ -331,7 +319,7 @@ impl Driver {
                 self.watch.look((&system, &due), &of, state);
             }
         }
-        self.ranks.shared = Some(shared);
+        self.ranks.keep(shared);
     }
 }
 

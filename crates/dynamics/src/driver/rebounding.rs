@@ -9,7 +9,6 @@
 //! energy, found by halving.
 
 use super::Driver;
-use super::contacts::rebound::Rebound;
 use crate::error::Error;
 
 /// Halvings of the interval of s.
@@ -24,7 +23,7 @@ impl Driver {
     /// # Errors
     /// A contact problem without solution.
     pub(super) fn limit_rebound(&mut self) -> Result<(), Error> {
-        if !self.contacts.rebound.any
+        if !self.contacts.rebound().is_any()
             || self.attempt.maps.is_static()
             || self.attempt.maps.first().rate.c != 0.0
         {
@@ -33,48 +32,22 @@ impl Driver {
         let rounding = ROUNDING.max(self.attempt.system.nonlinear.iteration.tolerance);
         self.contacts.join_parts(&self.attempt);
         self.contacts.weigh_impacts(&self.attempt);
-        let parts = 0..self.contacts.rebound.first.len();
-        let gains =
-            |driver: &Driver, first: usize| driver.contacts.rebound.gains(first, 0.0, rounding);
-        if !parts.clone().any(|first| gains(self, first)) {
+        if !self.contacts.rebound_mut().begin_limits(rounding) {
             return Ok(());
-        }
-        let Rebound { least, bounds, .. } = &mut self.contacts.rebound;
-        least.fill(f64::INFINITY);
-        bounds.fill([0.0, 1.0]);
-        for first in parts.clone() {
-            if gains(self, first) {
-                self.contacts.rebound.least[first] = 0.0;
-            }
         }
         self.rebound_by(|_| 0.0)?;
         // friction at the velocity of the end may give what is of the order of a step, with or without rebound
-        for first in parts.clone() {
-            let rebound = &mut self.contacts.rebound;
-            rebound.least[first] = rebound.least[first].max(rebound.made[first][0]);
-        }
+        self.contacts.rebound_mut().take_least();
         for _ in 0..HALVINGS {
             self.rebound_by(|[low, high]| 0.5 * (low + high))?;
-            for first in parts.clone() {
-                let most = self.contacts.rebound.least[first];
-                let gains = self.contacts.rebound.gains(first, most, rounding);
-                let [low, high] = &mut self.contacts.rebound.bounds[first];
-                *(if gains { high } else { low }) = 0.5 * (*low + *high);
-            }
+            self.contacts.rebound_mut().halve(rounding);
         }
         self.rebound_by(|[low, _]| low)
     }
 
     /// Solves the problem of the iteration with an s of the interval where the rebound is limited, and weighs what it makes.
     fn rebound_by(&mut self, of: impl Fn([f64; 2]) -> f64) -> Result<(), Error> {
-        let rebound = &mut self.contacts.rebound;
-        for part in 0..rebound.first.len() {
-            let first = rebound.first[part];
-            rebound.factor[part] = match rebound.least[first].is_finite() {
-                true => of(rebound.bounds[first]),
-                false => 1.0,
-            };
-        }
+        self.contacts.rebound_mut().take(of);
         self.begin_forces()?;
         self.find_forces()?;
         self.contacts.weigh_impacts(&self.attempt);

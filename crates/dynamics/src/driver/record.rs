@@ -33,25 +33,26 @@ impl Driver {
 
     /// What the points of the contacts did in the step: those that this process has.
     pub(super) fn report_contacts(&mut self) {
-        let mut all = std::mem::take(&mut self.contacts.sums);
-        let mut nodal = std::mem::take(&mut self.contacts.nodal);
+        let mut all = self.contacts.take_sums();
+        let mut nodal = self.contacts.take_nodal();
         all.clear();
         for k in 0..self.attempt.system.contacts.len() {
             let forces = &self.attempt.next.interface.force[self.attempt.system.points_of(k)];
-            let mixed = self.contacts.weak.mixed(k, forces);
+            let mixed = self.contacts.mixed(k, forces);
             let mut of = self.of_contact(k, &mut nodal);
             of.report.mixed = mixed;
             all.push(of);
         }
-        self.contacts.passage.forget();
-        (self.contacts.sums, self.contacts.nodal) = (all, nodal);
+        self.contacts.forget_passages();
+        self.contacts.keep_sums(all);
+        self.contacts.keep_nodal(nodal);
     }
 
     fn of_contact(&self, k: usize, nodal: &mut Vec<f64>) -> ContactSums {
         let (system, rows, projected) = (
             &*self.attempt.system,
-            &self.contacts.pairing.rows,
-            &self.stages.projected,
+            self.contacts.normal_rows(),
+            self.stages.projected(),
         );
         // without inertia forces give no impulse, and closing is no impact
         let dt = if self.attempt.maps.is_static() {
@@ -61,7 +62,7 @@ impl Driver {
         };
         let impulse = self.attempt.contact_impulse(k);
         let (old, new) = (&self.attempt.state.interface, &self.attempt.next.interface);
-        let points = || self.contacts.active.within(system.points_of(k));
+        let points = || self.contacts.active().within(system.points_of(k));
         let mut report = contact_report(points(), rows, [old, new], self.attempt.dt);
         self.contacts.report_friction(&self.attempt, k, &mut report);
         report.moment = self.moment_of(k, nodal);
@@ -121,7 +122,7 @@ impl Driver {
             self.attempt.dt
         };
         let span = [self.attempt.state.time, self.attempt.next.time];
-        for (k, of) in self.contacts.sums.iter().enumerate() {
+        for (k, of) in self.contacts.sums().iter().enumerate() {
             let impulse = self.attempt.contact_impulse(k);
             let durations = self.attempt.durations(k);
             let State {
@@ -142,7 +143,7 @@ impl Driver {
                 jump: of.jump,
             };
             let velocities = [&self.attempt.state.motion.v[..], &motion.v];
-            let points = self.contacts.active.within(system.points_of(k));
+            let points = self.contacts.active().within(system.points_of(k));
             records.add((&system, k), (&step, points), velocities);
             records.contacts[k].passing = of.passing;
             records.contacts[k].passed += of.passed;
@@ -178,11 +179,11 @@ impl Driver {
     ) -> impl Iterator<Item = (&'a Rows, usize, f64)> {
         let points = self
             .contacts
-            .active
+            .active()
             .within(self.attempt.system.points_of(contact));
-        let tangents = &self.contacts.pairing.tangents[..self.attempt.system.tangents()];
+        let tangents = self.contacts.tangent_rows(&self.attempt);
         points.flat_map(move |point| {
-            let normal = (&self.contacts.pairing.rows, point, interface.force[point]);
+            let normal = (self.contacts.normal_rows(), point, interface.force[point]);
             let friction = interface.friction.get(point);
             let friction = tangents.iter().zip(friction.into_iter().flatten());
             let friction = friction.map(move |(rows, t)| (rows, point, *t));
@@ -198,27 +199,26 @@ impl Driver {
         self.report.dt = dt;
         self.report.balance = state.ledger.balance;
         if state.step > 0 {
-            self.report.supports.clone_from(&self.balances.reactions);
+            self.report.supports.clear();
+            let reactions = self.balances.reactions();
+            self.report.supports.extend_from_slice(reactions);
         }
         self.report.passes = match self.attempt.system.is_nonlinear() {
-            true => self.parts.residuals.len(),
-            false if self.contacts.candidates.is_empty() && !self.is_shared() => 0,
-            false => self.contacts.solver.passes,
+            true => self.parts.residuals().len(),
+            false if self.contacts.candidates().is_empty() && !self.is_shared() => 0,
+            false => self.contacts.passes(),
         };
         if state.step == 0 {
+            let mut nodal = self.contacts.take_nodal();
             for (k, report) in self.report.contacts.iter_mut().enumerate() {
-                let (rows, interface) = (&self.contacts.pairing.rows, &state.interface);
+                let (rows, interface) = (self.contacts.normal_rows(), &state.interface);
                 let points = self.attempt.system.points_of(k);
                 *report = contact_report(points.clone(), rows, [interface; 2], 0.0);
                 let forces = points.map(|point| (rows, point, interface.force[point]));
                 let at = (&state.motion.frames[..], &[&state.motion.u[..]][..]);
-                report.moment = moment(
-                    (&self.attempt.system, k),
-                    forces,
-                    at,
-                    &mut self.contacts.nodal,
-                );
+                report.moment = moment((&self.attempt.system, k), forces, at, &mut nodal);
             }
+            self.contacts.keep_nodal(nodal);
         }
     }
 }

@@ -36,19 +36,18 @@ impl Driver {
     pub(super) fn refine(&mut self) -> Result<(), Error> {
         // the motion has the jump of the supports
         let jumps = std::mem::take(&mut self.attempt.vectors.jumps);
-        let mut refined = std::mem::take(&mut self.parts.refined);
+        let mut refined = self.parts.take_refined();
         refined.x.clone_from(&self.attempt.vectors.x);
         refined.residual.clone_from(&self.attempt.vectors.residual);
         refined.motion.clone_from(&self.attempt.vectors.dx);
         refined.mixing.clear();
-        self.parts.refined.holds_columns = true;
         let outcome = self.passes(&mut refined);
         let vectors = &mut self.attempt.vectors;
         vectors.jumps = jumps;
         vectors.x.copy_from_slice(&refined.x);
         vectors.residual.copy_from_slice(&refined.residual);
         vectors.dx.copy_from_slice(&refined.motion);
-        self.parts.refined = refined;
+        self.parts.keep_refined(refined);
         outcome
     }
 
@@ -69,7 +68,8 @@ impl Driver {
             last = now;
             refined.before.clone_from(&refined.motion);
             refined.interface.clone_from(&self.attempt.next.interface);
-            refined.slips.clone_from(&self.contacts.slips);
+            refined.slips.clear();
+            refined.slips.extend_from_slice(self.contacts.slips());
             self.contacts.load_pass(&mut self.parts, &mut self.attempt);
             self.solve_with_columns()?;
             let way = (
@@ -93,7 +93,7 @@ impl Driver {
     fn stand_at(&mut self, refined: &mut Refined) -> Standing {
         let system = Arc::clone(&self.attempt.system);
         self.parts
-            .effective
+            .effective_mut()
             .whole_product(&refined.motion, &mut refined.product);
         let vectors = &mut self.attempt.vectors;
         for (i, x) in vectors.x.iter_mut().enumerate() {

@@ -46,14 +46,15 @@ impl Driver {
             self.attempt.maps.whole(|map| map.force, motion, xc, place);
             self.links.turn_rows(&self.attempt);
             let (between, dt) = (self.attempt.between(), self.attempt.dt);
-            self.parts.stored =
-                self.parts
-                    .internal(&mut self.attempt, (Configuration::Place, between), |map| {
-                        match between {
-                            true => dt,
-                            false => map.instant(dt),
-                        }
-                    })?;
+            self.parts
+                .store(
+                    &mut self.attempt,
+                    (Configuration::Place, between),
+                    |map| match between {
+                        true => dt,
+                        false => map.instant(dt),
+                    },
+                )?;
             self.attempt.evaluate_loads_of_step();
         }
         let vectors = &mut self.attempt.vectors;
@@ -69,7 +70,7 @@ impl Driver {
             let left = load[i] - inertia[i] - internal[i] - damping[i];
             residual[i] = if fixed[i] { 0.0 } else { left };
         }
-        if !self.links.force.is_empty() {
+        if !self.links.force().is_empty() {
             let vectors = &mut self.attempt.vectors;
             vectors.unlinked.clone_from(&vectors.residual);
             self.links.add_link_force(&mut self.attempt);
@@ -83,7 +84,7 @@ impl Driver {
     /// one strikes it.
     pub(super) fn standing(&mut self) -> Standing {
         self.stages.spread(&self.contacts, &mut self.attempt);
-        let mut squares = std::mem::take(&mut self.parts.squares);
+        let mut squares = self.parts.take_squares();
         self.links
             .square_forces(&mut self.parts, &self.attempt, &mut squares);
         let tolerance = self.attempt.system.nonlinear.iteration.tolerance;
@@ -108,8 +109,8 @@ impl Driver {
                 (standing.imbalance, standing.rounding) = (imbalance, rounding);
             }
         }
-        self.parts.squares = squares;
-        self.parts.left_over = left_over.sqrt();
+        self.parts.keep_squares(squares);
+        self.parts.leave_over(left_over.sqrt());
         standing.force = force.sqrt();
         let of_points = self
             .contacts
@@ -133,7 +134,7 @@ impl Driver {
 
     /// Norm of the forces that the iterations of the last step may have left unbalanced, N; zero of linear steps.
     pub fn left_over(&self) -> f64 {
-        self.parts.left_over
+        self.parts.left_over()
     }
 }
 

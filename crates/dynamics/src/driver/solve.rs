@@ -2,8 +2,6 @@
 //!
 //! Where all is linear in the unknown, one iteration is all: free motion, interface problem, correction.
 
-use carom_contact::Search;
-
 use super::Driver;
 use super::parts::solve::WITHIN;
 use super::residual::Standing;
@@ -74,14 +72,14 @@ impl Driver {
                 return Err(Error::Interrupted);
             }
             let jumps = self.attempt.jumps();
-            self.parts.residuals.push(standing.imbalance);
+            self.parts.note_residual(standing.imbalance);
             if pass > 0 && !jumps && self.is_solved(&standing, before) {
                 return self
                     .contacts
                     .check_held(&self.parts, &mut self.attempt, pass);
             }
             if self.parts.floats(&self.attempt) && !jumps && self.approach(standing.scale)? {
-                self.parts.mixing.clear();
+                self.parts.forget_mixing();
                 standing = self.standing();
             }
             if self
@@ -89,10 +87,10 @@ impl Driver {
                 .wants_factor(&mut self.parts, &self.attempt, pass)
             {
                 self.renew()?;
-                (self.parts.pace.age, self.parts.pace.made) = (0, pass);
+                self.parts.pace_mut().begin(0, pass);
             }
-            self.parts.pace.age += 1;
-            self.parts.carried.keep(&self.attempt.next.interface);
+            self.parts.pace_mut().age += 1;
+            self.parts.keep_forces(&self.attempt.next.interface);
             self.solve_interface()?;
             // a motion that contacts hardly hold is far above the noise of the forces
             // what is mixed of a motion would be mixed of the multipliers too
@@ -124,11 +122,7 @@ impl Driver {
 
     /// First guess, residual and pairing of the attempt.
     pub(super) fn begin_iterations(&mut self, rigidly: bool) -> Result<(), Error> {
-        self.parts.residuals.clear();
-        (self.parts.pace.age, self.parts.pace.fresh) = (0, self.attempt.state.control.pace);
-        self.parts.pace.is_sized = false;
-        self.parts.floating.begin();
-        self.parts.mixing.clear();
+        self.parts.begin_iterations(self.attempt.state.control.pace);
         self.parts.take_matrices(&mut self.attempt)?;
         self.links.begin_links(&self.attempt);
         self.attempt.predict();
@@ -139,13 +133,13 @@ impl Driver {
         interface.follow(&self.attempt.state.interface);
         self.contacts.guess_slips(&mut self.attempt);
         self.contacts.take_weak(&self.attempt);
-        if self.parts.prepared {
+        if self.parts.is_prepared() {
             self.links.add_link_force(&mut self.attempt);
             return Ok(());
         }
         self.evaluate(true)?;
         self.attempt.vectors.ahead.clear();
-        self.contacts.search.iter_mut().for_each(Search::begin_step);
+        self.contacts.begin_search();
         self.contacts.begin_far(&self.attempt);
         self.contacts.forget_closings();
         self.contacts.pair(&mut self.attempt, true);
@@ -159,7 +153,7 @@ impl Driver {
 
     /// The one iteration of a step that is linear in the unknown.
     fn solve_at_once(&mut self) -> Result<(), Error> {
-        self.parts.residuals.push(0.0);
+        self.parts.note_residual(0.0);
         self.solve_interface()?;
         let vectors = &mut self.attempt.vectors;
         for (x, dx) in vectors.x.iter_mut().zip(&vectors.dx) {
@@ -167,13 +161,14 @@ impl Driver {
         }
         self.links.move_links(&self.attempt, 1.0);
         self.stages.spread(&self.contacts, &mut self.attempt);
-        self.parts.left_over = match self.attempt.system.is_nonlinear() {
+        let norm = match self.attempt.system.is_nonlinear() {
             true => {
                 self.links.scale_of_forces(&mut self.parts, &self.attempt)
                     * self.attempt.system.nonlinear.iteration.tolerance
             }
             false => 0.0,
         };
+        self.parts.leave_over(norm);
         Ok(())
     }
 
@@ -182,7 +177,7 @@ impl Driver {
     /// forces of links, whose passes need answers that are smooth in them.
     fn is_solved(&self, standing: &Standing, before: Option<f64>) -> bool {
         let gains = before.is_none_or(|before| standing.excess < GAIN * before);
-        let gains = gains && self.links.force.is_empty();
+        let gains = gains && self.links.force().is_empty();
         // the last iteration of those that converge quadratically is long: points that stick would slip by its square
         let most = if self.contacts.refines(&self.parts, &self.attempt) {
             WITHIN
@@ -224,7 +219,7 @@ impl Driver {
             }
             if shortening < SHORTENINGS {
                 share *= 0.5;
-                self.parts.carried.halve(&mut self.attempt.next.interface);
+                self.parts.halve_forces(&mut self.attempt.next.interface);
                 self.contacts.take_weak(&self.attempt);
             }
         }
@@ -240,10 +235,10 @@ impl Driver {
                 // a part that rolls far in one iteration deforms until the next: what is known of the way it rolls is as
                 // good as before
                 if share < 1.0 {
-                    self.parts.mixing.clear();
+                    self.parts.forget_mixing();
                 } else if standing.imbalance > before.imbalance && !self.parts.floats(&self.attempt)
                 {
-                    self.parts.mixing.keep_last();
+                    self.parts.keep_last_mixed();
                 }
                 Ok(standing)
             }

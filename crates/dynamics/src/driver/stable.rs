@@ -72,25 +72,19 @@ impl Driver {
         let (system, v) = (&*self.attempt.system, &self.attempt.state.motion.v);
         let (parts, bodies) = (&system.part_of_body, &self.attempt.state.shapes.bodies);
         // the last pass has found them
-        if let Some(direct) = self
-            .explicit
-            .direct
-            .as_ref()
-            .filter(|own| own.ready.is_some())
-        {
-            let fastest = |part: usize, _: &[f64; 3]| direct.parts[part].fastest;
-            return self.explicit.rates.largest(parts, bodies, fastest);
+        if let Some(rate) = self.explicit.rate_of_pass(parts, bodies) {
+            return rate;
         }
-        match &self.ranks.shared {
+        match self.ranks.shared() {
             None => {
                 let fastest = |part: usize, w: &[f64; 3]| fastest(system, part, (w, v));
-                self.explicit.rates.largest(parts, bodies, fastest)
+                self.explicit.rates_mut().largest(parts, bodies, fastest)
             }
             Some(shared) => {
-                self.explicit.rates.refer(parts, bodies);
-                let squares = shared.fastest(system, &self.explicit.rates.reference, v);
+                self.explicit.rates_mut().refer(parts, bodies);
+                let squares = shared.fastest(system, &self.explicit.rates().reference, v);
                 self.explicit
-                    .rates
+                    .rates_mut()
                     .largest(parts, bodies, |part, _| squares[part])
             }
         }
@@ -105,7 +99,7 @@ impl Driver {
         mut take: impl FnMut(&Body, &Seen, [f64; 3]),
     ) -> Result<(), Error> {
         let (system, motion) = (&*self.attempt.system, &self.attempt.state.motion);
-        if let Some(shared) = &mut self.ranks.shared {
+        if let Some(shared) = self.ranks.shared_mut() {
             let found = shared.look(system, motion, WORTH * CHANGE)?;
             for (body, (seen, velocity)) in system.bodies.iter().zip(&found) {
                 take(body, seen, *velocity);
@@ -209,9 +203,7 @@ impl Driver {
             &mut self.attempt.next.shapes,
         );
         std::mem::swap(&mut self.attempt.state, &mut self.attempt.next);
-        self.contacts.active.accept();
-        if let Some(direct) = &mut self.explicit.direct {
-            direct.go_on();
-        }
+        self.contacts.accept();
+        self.explicit.accept();
     }
 }

@@ -20,7 +20,6 @@ use crate::operator::Operators;
 use crate::records::Records;
 use crate::report::{ContactReport, StepReport};
 use crate::resultant::Resultant;
-use crate::shapes::Rates;
 use crate::state::{Links, State, empty_state, state_without_motion};
 use crate::step_forces::{OutsideForces, StepForces};
 use crate::step_terms::Energies;
@@ -53,10 +52,7 @@ impl Driver {
             parts: Parts::of(&system)?,
             links: super::links::Links::of(&system),
             stages: Stages::of(&system, &released)?,
-            explicit: Explicit {
-                direct,
-                rates: Rates::new(system.parts.len()),
-            },
+            explicit: Explicit::new(direct, system.parts.len()),
             ranks: RankWork::default(),
             balances: Balances::default(),
             origin: None,
@@ -105,13 +101,11 @@ impl Driver {
         self.attempt.next = state_without_motion(&system);
         self.attempt.state = empty_state(&system);
         if self.attempt.has_links() {
-            self.links.force.fill(0.0);
+            self.links.clear_force();
         }
-        self.attempt
-            .state
-            .motion
-            .link_force
-            .clone_from(&self.links.force);
+        let link_force = &mut self.attempt.state.motion.link_force;
+        link_force.clear();
+        link_force.extend_from_slice(self.links.force());
         let motion = &mut self.attempt.state.motion;
         let follows = system.nonlinear.follows.iter();
         let prescribed = follows.map(|follows| follows.unknown as usize);
@@ -142,7 +136,7 @@ impl Driver {
     ) -> Result<(), Error> {
         let system = Arc::clone(&self.attempt.system);
         self.contacts.size(&mut self.attempt, system.dt, system.dt);
-        self.parts.prepared = false;
+        self.parts.set_prepared(false);
         self.leave_direct();
         self.attempt.state.clone_from(end);
         let state = &mut self.attempt.state;
@@ -152,7 +146,7 @@ impl Driver {
         }
         state.motion.link_force.clone_from(&force);
         state.records.begin_dynamics();
-        self.links.force = force;
+        self.links.set_force(force);
         self.begin()?;
         self.keep_for_direct_steps();
         self.attempt.next.clone_from(&self.attempt.state);
@@ -166,7 +160,7 @@ impl Driver {
         self.contacts.pair_now(&mut self.attempt);
         let (system, interface) = (&*self.attempt.system, &self.attempt.state.interface);
         let mut forces = vec![0.0; system.unknowns()];
-        let pairing = &self.contacts.pairing;
+        let pairing = self.contacts.pairing();
         for point in (0..system.points()).filter(|point| chosen(system.contact_of(*point))) {
             let force = interface.force[point];
             if force != 0.0 {
@@ -197,7 +191,7 @@ impl Driver {
     fn start(&mut self) -> Result<(), Error> {
         let system = Arc::clone(&self.attempt.system);
         self.contacts.size(&mut self.attempt, system.dt, system.dt);
-        self.parts.prepared = false;
+        self.parts.set_prepared(false);
         self.leave_direct();
         self.attempt.state.records = Records::of(&system);
         self.make_room_for_start();
@@ -396,7 +390,7 @@ impl Driver {
     fn let_go(&mut self) {
         if let Some(released) = self.released.take() {
             self.attempt.system = released;
-            self.parts.effective.forget();
+            self.parts.forget_matrices();
         }
     }
 

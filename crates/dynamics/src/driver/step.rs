@@ -141,7 +141,7 @@ impl Driver {
         control.take(None, (taken, first, size), self.attempt.system.dt);
         self.attempt.next.step = taken + 1;
         self.attempt.next.time = end;
-        control.pace = self.parts.pace.fresh;
+        control.pace = self.parts.pace().fresh;
         self.report.join_parts();
         self.accept(control, size);
         Ok(())
@@ -160,8 +160,8 @@ impl Driver {
     pub(super) fn accept(&mut self, control: Control, size: f64) {
         self.origin = None;
         self.attempt.next.control = control;
-        self.attempt.next.control.compression = self.parts.stored.compression;
-        self.parts.prepared = false;
+        self.attempt.next.control.compression = self.parts.stored().compression;
+        self.parts.set_prepared(false);
         self.swap_states();
         self.attempt.show_followed(size);
         self.tell(size);
@@ -265,9 +265,7 @@ impl Stepper for Driver {
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {
-        let friction = self.contacts.failed_friction.as_ref();
-        let normal = self.contacts.failed.as_ref().map(FailedProblem::Normal);
-        normal.or(friction.map(FailedProblem::Friction))
+        self.contacts.failed_problem()
     }
 
     fn agree(&mut self, own: Going) -> Going {

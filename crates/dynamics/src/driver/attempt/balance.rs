@@ -30,7 +30,7 @@ impl Attempt {
     }
 
     /// The same of one zone.
-    pub(crate) fn weights_of(&self, zone: usize) -> [f64; 2] {
+    pub(super) fn weights_of(&self, zone: usize) -> [f64; 2] {
         let impulse = &self.maps.all()[zone].impulse;
         match (self.is_plain(), self.maps.is_static()) {
             _ if self.state.forces.is_empty() => [0.0, 1.0],

@@ -5,7 +5,7 @@ use super::Attempt;
 impl Attempt {
     /// Adds the forces of bolts to the loads of the step at a time (s): over the static stage all of their force, in the dynamics what they keep
     /// beside their stiffness.
-    pub(crate) fn add_bolts(&mut self, time: f64) {
+    pub(super) fn add_bolts(&mut self, time: f64) {
         let system = &*self.system;
         if !system.has_bolts {
             return;

@@ -71,7 +71,7 @@ impl Attempt {
     }
 
     /// The same, of pressures the mean on the way of the step to `place` if `between`.
-    pub(crate) fn evaluate_loads_over(&mut self, time: f64, between: bool) {
+    fn evaluate_loads_over(&mut self, time: f64, between: bool) {
         let system = &*self.system;
         let from = between.then_some(&self.state.motion.u[..]);
         let ramp = system.nonlinear.ramp(time);

@@ -1,19 +1,19 @@
 //! The attempt of a step under way: what all owners serve.
 
 pub(crate) mod balance;
-pub(crate) mod bolts;
+mod bolts;
 pub(crate) mod critical;
-pub(crate) mod deletion;
+mod deletion;
 pub(crate) mod forces;
 pub(crate) mod identity;
-pub(crate) mod in_stages;
-pub(crate) mod jump;
-pub(crate) mod links;
-pub(crate) mod points;
-pub(crate) mod residual;
-pub(crate) mod scheme_stage;
-pub(crate) mod springs;
-pub(crate) mod start;
+mod in_stages;
+mod jump;
+mod links;
+mod points;
+mod residual;
+mod scheme_stage;
+mod springs;
+mod start;
 pub(crate) mod vectors;
 
 use std::sync::Arc;

@@ -31,7 +31,7 @@ impl MeanForces<'_> {
     }
 
     /// The same, and the resultant at the places of the step.
-    pub(crate) fn work_and_resultant(&mut self, force: Weighted) -> (f64, Resultant) {
+    pub(super) fn work_and_resultant(&mut self, force: Weighted) -> (f64, Resultant) {
         let force = mean_force(force, &self.system.spans, self.mean);
         let (old, new) = (self.old, self.new);
         let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);

@@ -1,30 +1,68 @@
 //! What the balance of a step is made of, and forces of supports.
 
-pub(crate) mod mean_forces;
-pub(crate) mod obstacles;
+mod mean_forces;
+mod obstacles;
 pub(crate) mod record;
-pub(crate) mod reported;
-pub(crate) mod supports;
-pub(crate) mod worked;
-pub(crate) mod works;
+mod reported;
+mod supports;
+mod worked;
+mod works;
 
 use crate::driver::attempt::Attempt;
 use crate::driver::attempt::forces::Loads;
 use crate::error::Error;
 use crate::resultant::Resultant;
+use crate::system::System;
+use carom_algebra::rotation::Rotation;
+use carom_system::Motion;
 use supports::Jump;
 use works::Works;
 
 /// What the balance of a step is made of, and forces of supports.
 #[derive(Default)]
 pub(crate) struct Balances {
-    pub(crate) jump: Jump,
+    jump: Jump,
     /// Forces of the named supports in the last attempt.
-    pub(crate) reactions: Vec<Resultant>,
-    pub(crate) works: Works,
+    reactions: Vec<Resultant>,
+    works: Works,
 }
 
 impl Balances {
+    /// Works of the forces.
+    pub(crate) fn works_mut(&mut self) -> &mut Works {
+        &mut self.works
+    }
+
+    /// Writes the forces of the named supports; see [`reported::write`].
+    pub(crate) fn write_reactions(
+        &mut self,
+        system: &System,
+        at: (&[Rotation], Option<&[f64]>),
+        of: impl Fn(usize) -> f64,
+    ) {
+        reported::write(&mut self.reactions, system, at, of);
+    }
+
+    /// Those forces, to add those of other ranks.
+    pub(crate) fn reactions_mut(&mut self) -> &mut [Resultant] {
+        &mut self.reactions
+    }
+
+    /// The jump of the supports at the start of the step.
+    pub(crate) fn jump(&self) -> &Jump {
+        &self.jump
+    }
+
+    /// Exchanges the velocities before and after that jump.
+    pub(crate) fn exchange_jump(&mut self, motion: &mut Motion) {
+        self.jump.exchange(motion);
+    }
+
+    /// Forces of the named supports in the last attempt.
+    pub(crate) fn reactions(&self) -> &[Resultant] {
+        &self.reactions
+    }
+
     /// Computes the jump of the supports at the start of the step; tells whether there is one.
     pub(crate) fn find_jump(&mut self, attempt: &Attempt) -> Result<bool, Error> {
         if attempt.maps.is_static() || attempt.system.nonlinear.follows.is_empty() {

@@ -9,7 +9,7 @@ impl Balances {
     pub(crate) fn work_of_obstacles(&mut self, contacts: &Contacts, attempt: &Attempt) {
         let mut works = std::mem::take(&mut self.works.obstacles);
         works.clear();
-        for (contact, of) in contacts.sums.iter().enumerate() {
+        for (contact, of) in contacts.sums().iter().enumerate() {
             let impulse = &attempt.maps.all()[attempt.system.zone_of(contact)].contact_impulse;
             let weights = attempt.weights_as_told([impulse.old, impulse.new]);
             let work = attempt.work_of_obstacle(contact, weights, of.pushed);

@@ -67,7 +67,7 @@ impl Active {
     }
 
     /// Leaves the points that this process does not have to others.
-    pub(crate) fn keep_own(&mut self, system: &System, own_of: Vec<Own>) {
+    pub(super) fn keep_own(&mut self, system: &System, own_of: Vec<Own>) {
         let mut own = Vec::new();
         for (contact, of) in own_of.iter().enumerate() {
             let points = system.points_of(contact);
@@ -83,7 +83,7 @@ impl Active {
     }
 
     /// Configuration points of a contact this process has.
-    pub(crate) fn own_of(&self, contact: usize) -> &Own {
+    pub(super) fn own_of(&self, contact: usize) -> &Own {
         &self.own_of[contact]
     }
 

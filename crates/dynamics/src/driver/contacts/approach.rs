@@ -35,15 +35,15 @@ impl Contacts {
     /// Whether contact carries a piece that has gone on, for as many iterations as may be taken, along a motion with no contact on
     /// its way, and its load has not become less than half.
     pub(crate) fn tips(&self, parts: &mut Parts, attempt: &Attempt, rigid: &Rigid) -> bool {
-        let load = norm(&parts.floating.load);
-        let carried = parts.floating.load == parts.floating.carried && load > parts.left_over;
+        let load = norm(&parts.floating().load);
+        let carried = parts.floating().load == parts.floating().carried && load > parts.left_over();
         if !carried {
             return false;
         }
         let free = self
-            .way_to_contact(attempt, rigid, &parts.floating.load)
+            .way_to_contact(attempt, rigid, &parts.floating().load)
             .is_none();
-        let floating = &mut parts.floating;
+        let floating = parts.floating_mut();
         if !free || load < 0.5 * floating.tipped {
             (floating.tipping, floating.tipped) = (0, 0.0);
             return false;
@@ -57,7 +57,7 @@ impl Contacts {
 
     /// Pieces that hang together by contact forces with something that does not float.
     pub(crate) fn grounded(&self, parts: &Parts, attempt: &Attempt) -> Vec<usize> {
-        let pieces = &*parts.floating.pieces;
+        let pieces = parts.floating().pieces();
         let count = pieces.len();
         // one set more: all that does not float
         let mut set: Vec<usize> = (0..=count).collect();

@@ -12,8 +12,19 @@ use crate::driver::paired::approaches;
 use crate::driver::parts::Parts;
 
 impl Contacts {
+    /// Gap of a candidate at the end of the step without any contact force, m; of an adaptive step.
+    pub(crate) fn free_gap(&self, point: usize) -> Option<f64> {
+        let place = self.candidates.binary_search(&(point as u32));
+        place.ok().map(|place| self.free_gaps[place])
+    }
+
+    /// Tells that no point may carry a force.
+    pub(crate) fn forget_candidates(&mut self) {
+        self.candidates.clear();
+    }
+
     /// Leaves out points whose contact those opposite to them tell, where forces of both would hardly move anything apart.
-    pub(crate) fn leave_to_others(&mut self, attempt: &Attempt) {
+    fn leave_to_others(&mut self, attempt: &Attempt) {
         let (system, pairing) = (Arc::clone(&attempt.system), &self.pairing);
         let chosen = &attempt.next.interface.watched;
         self.candidates.retain(|&point| {
@@ -26,14 +37,14 @@ impl Contacts {
     }
 
     /// Makes the candidates those at some places, to be told of.
-    pub(crate) fn keep_places(&mut self, places: &[u32]) {
+    pub(super) fn keep_places(&mut self, places: &[u32]) {
         let points = places.iter().map(|&place| self.candidates[place as usize]);
         self.candidates = points.collect();
         self.candidate_data = self.candidate_data.at(places);
     }
 
     /// Notes the candidate whose tension did not settle, if there is one, in place of that of the iteration before.
-    pub(crate) fn note_clipped(&self, attempt: &mut Attempt, candidate: Option<usize>) {
+    pub(super) fn note_clipped(&self, attempt: &mut Attempt, candidate: Option<usize>) {
         attempt.notices.clipped.count = 0;
         if let Some(candidate) = candidate {
             let place = attempt.name(self.candidates[candidate] as usize);
@@ -42,7 +53,7 @@ impl Contacts {
     }
 
     /// Warns that statuses of contact points went in circles from this candidate on.
-    pub(crate) fn warn_of_circle(&self, attempt: &Attempt, candidate: usize) {
+    pub(super) fn warn_of_circle(&self, attempt: &Attempt, candidate: usize) {
         let name = attempt.name(self.candidates[candidate] as usize);
         tracing::warn!(
             "step {}: contact statuses cycle at {name}; they now change one at a time",

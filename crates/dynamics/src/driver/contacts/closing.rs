@@ -155,7 +155,7 @@ impl Contacts {
     }
 
     /// How deep the contacts of rigid bodies have landed, once the gaps at the end of the step are known.
-    pub(crate) fn note_landings(&self, attempt: &mut Attempt) {
+    pub(super) fn note_landings(&self, attempt: &mut Attempt) {
         for number in 0..attempt.system.contacts.len() {
             if !self.closings.rigid[number] {
                 continue;

@@ -27,7 +27,7 @@ impl Contacts {
 }
 
 /// A contact as the deletion of elements has left it.
-pub(crate) fn as_narrowed<'a>(
+pub(super) fn as_narrowed<'a>(
     narrowed: &'a [Option<Contact>],
     system: &'a System,
     number: usize,

@@ -11,7 +11,7 @@ use crate::interface::Candidate;
 use crate::step_map::{Row, StepMap};
 
 /// The rows of points of this width: normals alone, or each with its tangents.
-pub(crate) fn rows_of<'a>(width: u32, pairing: &'a Pairing, stacked: &'a Rows) -> &'a Rows {
+pub(super) fn rows_of<'a>(width: u32, pairing: &'a Pairing, stacked: &'a Rows) -> &'a Rows {
     match width {
         1 => &pairing.rows,
         _ => stacked,
@@ -20,7 +20,7 @@ pub(crate) fn rows_of<'a>(width: u32, pairing: &'a Pairing, stacked: &'a Rows) -
 
 impl Contacts {
     /// A contact point before the forces of the iteration: the one description that all problems of a step are made of.
-    pub(crate) fn contact_point(&self, attempt: &Attempt, point: usize) -> ContactPoint {
+    fn contact_point(&self, attempt: &Attempt, point: usize) -> ContactPoint {
         let (contact, place) = attempt.system.point(point);
         let carrier = &contact.points[place];
         let interface = &attempt.next.interface;
@@ -51,7 +51,7 @@ impl Contacts {
     }
 
     /// What the law of a point may know before the forces. `gap_free`: its gap without them, m.
-    pub(crate) fn local(&self, attempt: &Attempt, point: usize, gap_free: f64) -> Local {
+    pub(super) fn local(&self, attempt: &Attempt, point: usize, gap_free: f64) -> Local {
         self.contact_point(attempt, point).local(gap_free)
     }
 
@@ -133,7 +133,7 @@ impl Contacts {
     }
 
     /// Gap of a point at the end of the step without contact forces, m.
-    pub(crate) fn gap_at_the_end(&self, attempt: &Attempt, point: usize, free: f64) -> f64 {
+    fn gap_at_the_end(&self, attempt: &Attempt, point: usize, free: f64) -> f64 {
         let number = attempt.system.contact_of(point);
         let paired = self.paired_at(number);
         let ahead = |map: &StepMap| map.displacement.since(&paired.row(map));

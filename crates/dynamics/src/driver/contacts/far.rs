@@ -147,7 +147,7 @@ impl Far {
 
     /// Whether all contacts have looked far enough for ways of the nodes in the step, a system vector in m; those that have not look
     /// further from here on.
-    pub(crate) fn is_enough(&mut self, unknowns: &Unknowns, ways: &[f64]) -> bool {
+    pub(super) fn is_enough(&mut self, unknowns: &Unknowns, ways: &[f64]) -> bool {
         self.take_ways(unknowns, ways, 1.0);
         let mut enough = true;
         for contact in self.contacts.iter_mut().flatten() {
@@ -173,7 +173,7 @@ impl Far {
     }
 
     /// Tells that another configuration is under way.
-    pub(crate) fn forget_places(&mut self) {
+    pub(super) fn forget_places(&mut self) {
         self.placed = false;
     }
 
@@ -209,7 +209,7 @@ impl Far {
     /// Whether the sides of a contact that does not look for what is far are further apart at a configuration than points within
     /// `reach` (m) can be, or than they can have come closer by since the start of the step, if that is given: a foot may lie as far sideways as
     /// along the normal.
-    pub(crate) fn are_apart(
+    pub(super) fn are_apart(
         &mut self,
         number: usize,
         reach: f64,

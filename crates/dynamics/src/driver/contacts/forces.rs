@@ -1,7 +1,12 @@
 //! The contact forces of an iteration.
 
+use super::describe::rows_of;
+use crate::coulomb::Slip;
+use crate::driver::paired::sums_compliances;
+use crate::driver::stages::impulse::Impulses;
 use carom_nonsmooth::{Compliance as D, Condensed, ContactSolver, Unsolved};
 use carom_system::ContactPair;
+use std::sync::Arc;
 
 use super::Contacts;
 use crate::compliance::Compliance;
@@ -13,8 +18,40 @@ use crate::interface::InterfaceProblem;
 use crate::operator::Operators;
 
 impl Contacts {
+    /// The same, where no other point has a status of friction.
+    pub(crate) fn take_all_found(&mut self, attempt: &mut Attempt) {
+        self.slips.fill(Slip::Open);
+        self.take_found(attempt);
+    }
+
+    /// Adds the forces found to the begun solve of the parts, and to what they push the rows of links with.
+    pub(crate) fn add_found(
+        &self,
+        (parts, pushed): (&mut Parts, &mut [f64]),
+        attempt: &mut Attempt,
+        width: u32,
+    ) {
+        let factor = attempt.maps.contact();
+        let Some((operators, compliance, linking)) = parts.effective_mut().all() else {
+            return;
+        };
+        let found = self.candidates.iter().zip(&self.solver.found);
+        let of_rows = found.flat_map(|(&point, found)| {
+            let [one, two] = found.tangential;
+            let forces = [found.normal, one, two].map(|force| factor * force);
+            (point * width..(point + 1) * width).zip(forces)
+        });
+        let half = &mut attempt.vectors.half;
+        for (row, force) in of_rows.clone().filter(|(_, force)| *force != 0.0) {
+            compliance.add(row, force, operators, half);
+        }
+        if let Some(linking) = linking {
+            linking.answer(&attempt.system, operators, of_rows, (half, pushed));
+        }
+    }
+
     /// Factors of D p in gaps, rates and sliding, with the force factor of the balance.
-    pub(crate) fn factors_of_forces(&self, attempt: &Attempt) -> [f64; 3] {
+    fn factors_of_forces(&self, attempt: &Attempt) -> [f64; 3] {
         let (first, factor) = (attempt.maps.first(), attempt.maps.contact());
         let sliding = self.sliding(attempt).0(first).x;
         [first.gap.x, first.rate.x, sliding].map(|s| s * factor)
@@ -37,7 +74,7 @@ impl Contacts {
     }
 
     /// Takes the forces and statuses found for the candidates, and tells what went on in the solve.
-    pub(crate) fn take_found(&mut self, attempt: &mut Attempt) {
+    pub(super) fn take_found(&mut self, attempt: &mut Attempt) {
         self.note_clipped(attempt, self.solver.unsettled);
         let interface = &mut attempt.next.interface;
         for (&point, found) in self.candidates.iter().zip(&self.solver.found) {
@@ -60,7 +97,7 @@ impl Contacts {
         let asks = |contact: &ContactPair| contact.law.needs_free_gap();
         let asked = system.adaptive.is_some() || system.contacts.iter().any(asks);
         let iterates = |(operators, _): (&mut Operators, &mut Compliance)| operators.iterate();
-        !asked && !self.candidates.is_empty() && parts.effective.both().is_some_and(iterates)
+        !asked && !self.candidates.is_empty() && parts.effective_mut().both().is_some_and(iterates)
     }
 
     /// Forces and motion by iterations of both; the motion of the forces is added to the begun solve.
@@ -74,7 +111,7 @@ impl Contacts {
         width: u32,
     ) -> Result<(), Error> {
         let (factor, s) = (attempt.maps.contact(), self.factors_of_forces(attempt));
-        let Some((operators, compliance)) = parts.effective.both() else {
+        let Some((operators, compliance)) = parts.effective_mut().both() else {
             return Ok(());
         };
         let (lent, tolerance) = operators.lend();
@@ -120,7 +157,7 @@ impl Contacts {
         width: u32,
     ) -> Result<(), Error> {
         let s = self.factors_of_forces(attempt);
-        let Some((_, compliance)) = parts.effective.both() else {
+        let Some((_, compliance)) = parts.effective_mut().both() else {
             return Ok(());
         };
         self.solver.open(self.candidates.len());
@@ -157,7 +194,7 @@ impl Contacts {
     }
 
     /// The error of candidates without solution, whose problem is kept. `entries`: D and the factors of D p, where D is known.
-    pub(crate) fn unsolved(
+    pub(super) fn unsolved(
         &mut self,
         attempt: &Attempt,
         failure: Unsolved,
@@ -206,5 +243,61 @@ impl Contacts {
             point: attempt.name(self.candidates[failure.candidate] as usize),
             cause: failure,
         }
+    }
+
+    /// The problem of all candidates, with a dense D.
+    pub(crate) fn solve_all(
+        &mut self,
+        (parts, stage): (&mut Parts, Option<&mut Impulses>),
+        attempt: &Attempt,
+        width: u32,
+    ) -> Result<(), Error> {
+        let system = Arc::clone(&attempt.system);
+        let mut s = self.factors_of_forces(attempt);
+        let Some((operators, compliance, mut linking)) = parts.effective_mut().all() else {
+            return Ok(());
+        };
+        let Contacts {
+            pairing,
+            stacked,
+            candidate_data,
+            solver,
+            weak,
+            with_weak,
+            ..
+        } = self;
+        let rows = rows_of(width, pairing, stacked);
+        let (mut matrix, mut version) = match &mut linking {
+            Some(linking) => linking.compliance(&system, (&mut *operators, compliance), rows),
+            None => (compliance.matrix(), compliance.version),
+        };
+        if let Some(stage) = stage
+            && sums_compliances(&system, attempt.maps.first())
+        {
+            let rate = attempt.maps.first().rate;
+            let own = (rate.x * attempt.maps.contact(), matrix);
+            if let Some(sum) = stage.sum(&system, rows, compliance.rows(), own, rate.c) {
+                (matrix, s) = (sum, [0.0, 1.0, 1.0]);
+            }
+        }
+        if width == 1 {
+            let condensed = ((matrix, compliance.rows(), version), rows);
+            (matrix, version) = with_weak.of(weak, &system, condensed, [s[0], s[1]]);
+        }
+        let solved = solver.solve(
+            candidate_data.all(),
+            &Condensed {
+                d: D::Dense(matrix),
+                version,
+                s,
+                tangents: width as usize - 1,
+                tolerance: system.nonlinear.iteration.tolerance,
+            },
+        );
+        if let Err(failure) = solved {
+            let entries = Some((matrix.to_vec(), s));
+            return Err(self.unsolved(attempt, failure, entries));
+        }
+        Ok(())
     }
 }

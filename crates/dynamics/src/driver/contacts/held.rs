@@ -52,13 +52,7 @@ impl Contacts {
     }
 
     /// The error of a point that has left the face which it stays with.
-    pub(crate) fn strayed(
-        &self,
-        parts: &Parts,
-        attempt: &Attempt,
-        point: &str,
-        passes: usize,
-    ) -> Error {
+    fn strayed(&self, parts: &Parts, attempt: &Attempt, point: &str, passes: usize) -> Error {
         let mut error = self.no_equilibrium(parts, attempt, passes);
         if let Error::Equilibrium { contact, .. } = &mut error {
             *contact = format!("; {point} slides through the fold between two faces").into();

@@ -1,33 +1,35 @@
 //! Contacts: search, pairing, points that may carry a force, their laws, the problems of forces and friction, what they did.
 
-pub(crate) mod active;
-pub(crate) mod apart;
-pub(crate) mod approach;
-pub(crate) mod balance;
-pub(crate) mod candidates;
-pub(crate) mod closing;
-pub(crate) mod closings;
-pub(crate) mod compressed;
-pub(crate) mod deletion;
-pub(crate) mod describe;
-pub(crate) mod direct;
-pub(crate) mod far;
-pub(crate) mod forces;
-pub(crate) mod held;
-pub(crate) mod near;
-pub(crate) mod pairing_modes;
-pub(crate) mod passage;
-pub(crate) mod points;
-pub(crate) mod ranked;
-pub(crate) mod rebound;
-pub(crate) mod rebounding;
+mod active;
+mod apart;
+mod approach;
+mod balance;
+mod candidates;
+mod closing;
+mod closings;
+mod compressed;
+mod deletion;
+mod describe;
+mod direct;
+mod far;
+mod forces;
+mod held;
+mod near;
+mod pairing_modes;
+mod passage;
+mod points;
+mod ranked;
+mod rebound;
+mod rebounding;
 pub(crate) mod record;
-pub(crate) mod refine;
-pub(crate) mod solve;
+mod refine;
+mod solve;
 pub(crate) mod span;
 pub(crate) mod tangents;
 pub(crate) mod weak;
 
+use crate::march::FailedProblem;
+use carom_algebra::Interrupt;
 use std::cell::RefCell;
 
 use carom_algebra::solver::Saddle;
@@ -52,50 +54,140 @@ use weak::{WeakForms, WithWeak};
 
 /// Contacts: search, pairing, points that may carry a force, their laws, the problems of forces and friction, what they did.
 pub(crate) struct Contacts {
-    pub(crate) pairing_modes: Vec<PairingMode>,
+    pairing_modes: Vec<PairingMode>,
     /// Whether any contact is paired where the unknown leads.
-    pub(crate) turns: bool,
+    turns: bool,
     /// Whether sliding is a velocity in steps of this size and stage.
-    pub(crate) by_rate: bool,
+    by_rate: bool,
     /// Solves for the forces of the candidates, and has what was found.
-    pub(crate) solver: ContactSolver,
+    solver: ContactSolver,
     /// Those of groups of candidates that do not act on each other, where there are several.
-    pub(crate) group_solvers: Vec<ContactSolver>,
+    group_solvers: Vec<ContactSolver>,
     /// The problem of contacts where matrices are solved with by iterations.
-    pub(crate) saddle: RefCell<Saddle>,
-    pub(crate) pairing: Pairing,
+    saddle: RefCell<Saddle>,
+    pairing: Pairing,
     /// Whether its rows are those of the reference places, so that its gaps alone move.
-    pub(crate) rows_stand: bool,
+    rows_stand: bool,
     /// Contacts with small sliding where all nodes are at their reference places; empty until they are paired.
-    pub(crate) initial: Vec<Pairing>,
-    pub(crate) search: Vec<Search>,
+    initial: Vec<Pairing>,
+    search: Vec<Search>,
     /// Contacts whose primary sides have lost cells, and the number of deleted elements that they are for; empty as long as none has.
-    pub(crate) narrowed: Vec<Option<Contact>>,
-    pub(crate) narrowed_for: u64,
-    pub(crate) active: Active,
-    pub(crate) passage: Passage,
-    pub(crate) far: Far,
-    pub(crate) closings: Closings,
-    pub(crate) rebound: Rebound,
+    narrowed: Vec<Option<Contact>>,
+    narrowed_for: u64,
+    active: Active,
+    passage: Passage,
+    far: Far,
+    closings: Closings,
+    rebound: Rebound,
     /// Points that may carry a force, ascending.
-    pub(crate) candidates: Vec<u32>,
-    pub(crate) candidate_data: CandidateData,
+    candidates: Vec<u32>,
+    candidate_data: CandidateData,
     /// Gaps of the candidates at the end of the step without any contact force, m; of an adaptive step.
-    pub(crate) free_gaps: Vec<f64>,
-    pub(crate) weak: WeakForms,
-    pub(crate) with_weak: WithWeak,
+    free_gaps: Vec<f64>,
+    weak: WeakForms,
+    with_weak: WithWeak,
     /// Normal and tangential rows of all points, point after point, where there is friction; of steps with iterations.
-    pub(crate) stacked: Rows,
-    pub(crate) slips: Vec<Slip>,
-    pub(crate) failed: Option<InterfaceProblem>,
-    pub(crate) failed_friction: Option<FrictionProblem>,
+    stacked: Rows,
+    slips: Vec<Slip>,
+    failed: Option<InterfaceProblem>,
+    failed_friction: Option<FrictionProblem>,
     /// What the points of each contact did in the attempt: those of this process, then of all.
-    pub(crate) sums: Vec<ContactSums>,
+    sums: Vec<ContactSums>,
     /// Room for nodal forces of a contact whose moment is reported, N.
-    pub(crate) nodal: Vec<f64>,
+    nodal: Vec<f64>,
 }
 
 impl Contacts {
+    /// Points of a contact whose weak form gives them a force of another sign than their own.
+    pub(crate) fn mixed(&mut self, contact: usize, forces: &[f64]) -> usize {
+        self.weak.mixed(contact, forces)
+    }
+
+    /// Points that may carry a force, ascending.
+    pub(crate) fn candidates(&self) -> &[u32] {
+        &self.candidates
+    }
+
+    /// The points that the attempt looks at.
+    pub(crate) fn active(&self) -> &Active {
+        &self.active
+    }
+
+    /// Where the points are paired, with their rows.
+    pub(crate) fn pairing(&self) -> &Pairing {
+        &self.pairing
+    }
+
+    /// Rows of N.
+    pub(crate) fn normal_rows(&self) -> &Rows {
+        &self.pairing.rows
+    }
+
+    /// Rows of the tangents that friction has.
+    pub(crate) fn tangent_rows(&self, attempt: &Attempt) -> &[Rows] {
+        &self.pairing.tangents[..attempt.system.tangents()]
+    }
+
+    /// Weak forms and what they add.
+    pub(crate) fn weak(&self) -> &WeakForms {
+        &self.weak
+    }
+
+    /// What the points of each contact did in the attempt.
+    pub(crate) fn sums(&self) -> &[ContactSums] {
+        &self.sums
+    }
+
+    /// Status of friction of each point.
+    pub(crate) fn slips(&self) -> &[Slip] {
+        &self.slips
+    }
+
+    /// Passes of the status loop of the last problem.
+    pub(crate) fn passes(&self) -> usize {
+        self.solver.passes
+    }
+
+    /// The problem that had no solution in the last attempt.
+    pub(crate) fn failed_problem(&self) -> Option<FailedProblem<'_>> {
+        let normal = self.failed.as_ref().map(FailedProblem::Normal);
+        let friction = self.failed_friction.as_ref();
+        normal.or(friction.map(FailedProblem::Friction))
+    }
+
+    /// Begins an attempt in which no problem has failed yet.
+    pub(crate) fn forget_failures(&mut self) {
+        (self.failed, self.failed_friction) = (None, None);
+    }
+
+    /// Forgets which points have passed what they face.
+    pub(crate) fn forget_passages(&mut self) {
+        self.passage.forget();
+    }
+
+    /// Makes the attempt the state.
+    pub(crate) fn accept(&mut self) {
+        self.active.accept();
+    }
+
+    /// Tells that an attempt looks at all points.
+    pub(crate) fn leave_active(&mut self) {
+        self.active.leave();
+    }
+
+    /// Begins the search of a step.
+    pub(crate) fn begin_search(&mut self) {
+        self.search.iter_mut().for_each(Search::begin_step);
+    }
+
+    /// Ends solves early where this is set.
+    pub(crate) fn heed(&mut self, interrupt: &Interrupt) {
+        let groups = self.group_solvers.iter_mut();
+        std::iter::once(&mut self.solver)
+            .chain(groups)
+            .for_each(|solver| solver.heed(interrupt));
+    }
+
     /// Whether the effective matrix leaves out much of the derivative of the forces: of those between two states what is not
     /// symmetric, of contacts whose points slide how rows and weights move with them.
     pub(crate) fn leaves_out(&self, attempt: &Attempt) -> bool {
@@ -107,7 +199,7 @@ impl Contacts {
     }
 
     /// How long after the start of the step a contact is paired, s.
-    pub(crate) fn paired_after(&self, attempt: &Attempt, number: usize) -> f64 {
+    fn paired_after(&self, attempt: &Attempt, number: usize) -> f64 {
         let law = attempt.law(&attempt.system.contacts[number]);
         match law.get().level() {
             _ if attempt.between() => 0.5 * attempt.dt,

@@ -59,7 +59,7 @@ impl Contacts {
     }
 
     /// `placed`: configuration of the contact before.
-    pub(crate) fn pair_near_of(
+    fn pair_near_of(
         &mut self,
         attempt: &mut Attempt,
         number: usize,

@@ -9,7 +9,7 @@ use crate::driver::paired::{Paired, PairingMode};
 
 impl Contacts {
     /// The pairing_modes of the contacts, after the size of the step or its stage has changed.
-    pub(crate) fn renew_pairing_modes(&mut self, attempt: &Attempt) {
+    pub(super) fn renew_pairing_modes(&mut self, attempt: &Attempt) {
         let manner = |number: usize| {
             let paired = attempt.configuration(number);
             let contact = &attempt.system.contacts[number];

@@ -1,5 +1,6 @@
 //! The contacts of an iteration: where they are paired, and what their laws see.
 
+use crate::system::System;
 use std::sync::Arc;
 
 use carom_contact::law::{End, Level, Status};
@@ -189,7 +190,7 @@ impl Contacts {
 
     /// Whether no force moves a point, what its row moves being held but for rounding, and its law does not say the force either: the support
     /// takes what presses it, and no force of the contact is decided by anything.
-    pub(crate) fn is_held(&self, attempt: &Attempt, point: usize) -> bool {
+    fn is_held(&self, attempt: &Attempt, point: usize) -> bool {
         let (unknowns, row) = self.pairing.rows.row(point);
         let (mut free, mut whole) = (0.0, 0.0);
         for (&unknown, n) in unknowns.iter().zip(row) {
@@ -217,8 +218,18 @@ impl Contacts {
         self.weak.take(&attempt.system, forces, 1.0);
     }
 
+    /// The same of other forces: of some points, in N once multiplied with `factor`.
+    pub(crate) fn take_weak_forces(
+        &mut self,
+        system: &System,
+        forces: impl Iterator<Item = (usize, f64)> + Clone,
+        factor: f64,
+    ) {
+        self.weak.take(system, forces, factor);
+    }
+
     /// Gap and rate of a point with what its weak form adds to them.
-    pub(crate) fn weakly(
+    pub(super) fn weakly(
         &self,
         attempt: &Attempt,
         point: usize,
@@ -280,7 +291,7 @@ impl Contacts {
     }
 
     /// Moves the gaps of the points from `first` on, paired at the configuration in `place`, to another one.
-    pub(crate) fn move_gaps(&mut self, attempt: &mut Attempt, first: usize, to: Paired) {
+    fn move_gaps(&mut self, attempt: &mut Attempt, first: usize, to: Paired) {
         let Vectors {
             x,
             push,
@@ -333,7 +344,7 @@ impl Contacts {
     }
 
     /// The same of a contact. Its forces are compared with the largest of its own.
-    pub(crate) fn worst_point_of(
+    fn worst_point_of(
         &self,
         parts: &Parts,
         attempt: &Attempt,
@@ -391,6 +402,6 @@ impl Contacts {
 
     /// Whether all is linear in the unknown, so that one iteration is all.
     pub(crate) fn is_affine(&self, parts: &Parts) -> bool {
-        !self.turns && !parts.effective.iterates()
+        !self.turns && !parts.effective().iterates()
     }
 }

@@ -1,5 +1,7 @@
 //! Contacts of explicit steps that several processes take together.
 
+use crate::shared::InReach;
+use crate::step_map::StepMap;
 use std::sync::Arc;
 
 use carom_contact::Search;
@@ -13,6 +15,41 @@ use crate::shared::{Own, Part, Shared};
 use crate::update::Sums;
 
 impl Contacts {
+    /// How far the own points of each contact moved in the search, for the sums of all ranks.
+    pub(crate) fn report_motions(&mut self, map: &StepMap) {
+        for k in 0..self.sums.len() {
+            let in_steps = self.paired_at(k).row(map) == map.displacement;
+            let Own::Some(own) = self.active.own_of(k) else {
+                continue;
+            };
+            self.sums[k].motion = match (in_steps, own.nodes.is_empty()) {
+                (false, _) => f64::INFINITY,
+                (true, true) => 0.0,
+                (true, false) => self.search[k].motion(),
+            };
+        }
+    }
+
+    /// The points of the attempt are those in reach.
+    pub(crate) fn look_to(&mut self, in_reach: &InReach) {
+        self.active.look_to(in_reach);
+    }
+
+    /// Takes the sums, to add those of other ranks.
+    pub(crate) fn take_sums(&mut self) -> Vec<ContactSums> {
+        std::mem::take(&mut self.sums)
+    }
+
+    /// Keeps the sums of all ranks.
+    pub(crate) fn keep_sums(&mut self, sums: Vec<ContactSums>) {
+        self.sums = sums;
+    }
+
+    /// The most passes of any rank.
+    pub(crate) fn set_passes(&mut self, passes: usize) {
+        self.solver.passes = passes;
+    }
+
     /// Takes the contact points that this rank has now.
     pub(crate) fn take_homes(
         &mut self,

@@ -1,14 +1,25 @@
 //! How much of the restitution of rigid bodies makes no energy.
 
+use super::rebound::Rebound;
 use std::sync::Arc;
 
 use super::Contacts;
 use crate::driver::attempt::Attempt;
 
 impl Contacts {
+    /// What limits the rebound of rigid bodies.
+    pub(crate) fn rebound(&self) -> &Rebound {
+        &self.rebound
+    }
+
+    /// The same, to find the limits of an iteration.
+    pub(crate) fn rebound_mut(&mut self) -> &mut Rebound {
+        &mut self.rebound
+    }
+
     /// The part s of the coefficient of restitution that a point has.
-    pub(crate) fn rebound_of(&self, attempt: &Attempt, point: usize) -> f64 {
-        if !self.rebound.any {
+    pub(super) fn rebound_of(&self, attempt: &Attempt, point: usize) -> f64 {
+        if !self.rebound.is_any() {
             return 1.0;
         }
         let first = self.pairing.rows.row(point).0.first();
@@ -65,12 +76,7 @@ impl Contacts {
     }
 
     /// Rates along a tangent at the start of the step and at its end, m/s; twice their mean half each where the way is what counts.
-    pub(crate) fn sliding_rates(
-        &self,
-        attempt: &Attempt,
-        point: usize,
-        tangent: usize,
-    ) -> [f64; 2] {
+    fn sliding_rates(&self, attempt: &Attempt, point: usize, tangent: usize) -> [f64; 2] {
         let (row, time) = self.sliding(attempt);
         let rows = &self.pairing.tangents[tangent];
         let map = attempt.map_of(attempt.system.contact_of(point));

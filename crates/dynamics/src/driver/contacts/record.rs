@@ -12,6 +12,16 @@ use crate::small::Largest;
 use crate::state::State;
 
 impl Contacts {
+    /// Takes the room for nodal forces, N.
+    pub(crate) fn take_nodal(&mut self) -> Vec<f64> {
+        std::mem::take(&mut self.nodal)
+    }
+
+    /// Keeps that room.
+    pub(crate) fn keep_nodal(&mut self, nodal: Vec<f64>) {
+        self.nodal = nodal;
+    }
+
     /// Force of an obstacle that moves, and the power of its turn, in the step that was taken: of the normal and of the
     /// friction forces f of its points f · ẋ with the velocity ẋ of its particle there, less what the translation has of it.
     /// The rate of the rows is the negative of ẋ along them.

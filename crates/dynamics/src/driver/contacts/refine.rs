@@ -78,7 +78,7 @@ impl Contacts {
             self.turning(contact) != 0.0
                 && attempt.system.contacts[contact].sliding == Sliding::Finite
         };
-        parts.effective.has_whole_tangent()
+        parts.effective().has_whole_tangent()
             && parts.may_refine(attempt)
             && (attempt.between() || self.candidates.iter().any(turns))
     }
@@ -104,12 +104,12 @@ impl Contacts {
     }
 
     /// Adds the forces of the candidates along the rows of their columns, times `factor`, to `work`.
-    pub(crate) fn take_column_forces(&self, parts: &mut Parts, attempt: &mut Attempt, factor: f64) {
+    fn take_column_forces(&self, parts: &mut Parts, attempt: &mut Attempt, factor: f64) {
         let width = 1 + match self.rubs(attempt) {
             true => attempt.system.tangents() as u32,
             false => 0,
         };
-        let Some((_, compliance)) = parts.effective.both() else {
+        let Some((_, compliance)) = parts.effective_mut().both() else {
             return;
         };
         let interface = &attempt.next.interface;

@@ -15,8 +15,8 @@ impl Contacts {
             }
             _ => String::new(),
         };
-        let last = parts.residuals.len().saturating_sub(8);
-        let history = parts.residuals[last..].iter().map(|r| format!("{r:.1e}"));
+        let last = parts.residuals().len().saturating_sub(8);
+        let history = parts.residuals()[last..].iter().map(|r| format!("{r:.1e}"));
         Error::Equilibrium {
             step: attempt.state.step + 1,
             time: attempt.state.time,
@@ -32,17 +32,18 @@ impl Contacts {
 
     /// Whether this iteration needs a new factor.
     pub(crate) fn wants_factor(&self, parts: &mut Parts, attempt: &Attempt, pass: usize) -> bool {
-        if !parts.effective.iterates() {
+        if !parts.effective().iterates() {
             return false;
         }
-        if self.refines(parts, attempt) && parts.pace.age > 0 {
+        if self.refines(parts, attempt) && parts.pace().age > 0 {
             return parts.wants_tangent(attempt);
         }
-        let (Some(&now), Some(price)) = (parts.residuals.last(), parts.effective.price()) else {
+        let (Some(&now), Some(price)) = (parts.residuals().last(), parts.effective().price())
+        else {
             return true;
         };
         let Some(ratio) = self.contraction(parts, attempt) else {
-            return parts.pace.age == 0;
+            return parts.pace().age == 0;
         };
         let least = if self.alternates(parts, attempt) {
             1.0
@@ -54,11 +55,11 @@ impl Contacts {
         }
         let left = (attempt.system.nonlinear.iteration.tolerance / now).ln();
         let needed = left / ratio.ln();
-        if self.alternates(parts, attempt) && parts.pace.age == 2 && parts.pace.made > 0 {
-            parts.pace.fresh = ratio;
+        if self.alternates(parts, attempt) && parts.pace().age == 2 && parts.pace().made > 0 {
+            parts.pace_mut().fresh = ratio;
         }
-        let fresh = match parts.pace.fresh > 0.0 {
-            true => (left / parts.pace.fresh.ln()).max(FRESH),
+        let fresh = match parts.pace().fresh > 0.0 {
+            true => (left / parts.pace().fresh.ln()).max(FRESH),
             false => FRESH,
         };
         let keeps = needed <= fresh + TANGENT + price;
@@ -74,15 +75,15 @@ impl Contacts {
     }
 
     /// Whether residuals fall by turns fast and slowly.
-    pub(crate) fn alternates(&self, parts: &Parts, attempt: &Attempt) -> bool {
+    fn alternates(&self, parts: &Parts, attempt: &Attempt) -> bool {
         attempt.between() && !self.refines(parts, attempt)
     }
 
     /// Factor by which an iteration with the factor at hand shrinks the residual, if that is known. The matrix of forces
     /// between two states is the symmetric part of their derivative, with which residuals fall by turns fast and slowly:
     /// two iterations are looked at.
-    pub(crate) fn contraction(&self, parts: &Parts, attempt: &Attempt) -> Option<f64> {
-        match (&parts.residuals[..], parts.pace.age) {
+    fn contraction(&self, parts: &Parts, attempt: &Attempt) -> Option<f64> {
+        match (parts.residuals(), parts.pace().age) {
             (_, 0) => None,
             ([.., before, now], 1) if !self.alternates(parts, attempt) => Some(now / before),
             (_, 1) => None,
@@ -100,8 +101,7 @@ impl Contacts {
             true => LARGEST_OF_FLOATING,
             false => LARGEST,
         };
-        let way = (&attempt.vectors.x[..], &mut attempt.vectors.dx[..]);
-        if parts.mixing.mix(way, &mut attempt.next.interface, largest) {
+        if parts.mix(attempt, largest) {
             self.take_weak(attempt);
         }
     }

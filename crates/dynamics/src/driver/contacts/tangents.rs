@@ -9,7 +9,7 @@ use crate::report::ContactReport;
 use crate::step_map::{Row, StepMap};
 
 /// Points that carried friction are first thought to stick.
-pub(crate) fn first_thought(friction: &[f64; 2]) -> Slip {
+pub(super) fn first_thought(friction: &[f64; 2]) -> Slip {
     match friction == &[0.0; 2] {
         true => Slip::Open,
         false => Slip::Stick,
@@ -106,7 +106,7 @@ impl Contacts {
     }
 
     /// How far a point that sticks has slid at the x of the iteration, m.
-    pub(crate) fn slip_defect(&self, attempt: &Attempt, point: usize) -> f64 {
+    pub(super) fn slip_defect(&self, attempt: &Attempt, point: usize) -> f64 {
         if self.slips.get(point) != Some(&Slip::Stick) {
             return 0.0;
         }
@@ -119,7 +119,7 @@ impl Contacts {
     /// How far the friction of a point is from what its status allows, over `largest`, the largest force of all points:
     /// |t| - μ P of a point that sticks, | |t| - μ P | of one that slips, over what their equations may leave, 2 + μ.
     /// Forces of one solve obey this to its tolerance, a mixture of points that stick and slip need not.
-    pub(crate) fn cone_defect(&self, attempt: &Attempt, point: usize, largest: f64) -> f64 {
+    pub(super) fn cone_defect(&self, attempt: &Attempt, point: usize, largest: f64) -> f64 {
         let interface = &attempt.next.interface;
         let (Some(t), Some(slip)) = (interface.friction.get(point), self.slips.get(point)) else {
             return 0.0;
@@ -150,7 +150,7 @@ impl Contacts {
     }
 
     /// Rate at which a point slides at the start of the step, m/s.
-    pub(crate) fn sliding_speed(&self, attempt: &Attempt, point: usize) -> f64 {
+    pub(super) fn sliding_speed(&self, attempt: &Attempt, point: usize) -> f64 {
         let mut square = 0.0;
         for rows in &self.pairing.tangents[..attempt.system.tangents()] {
             let rate = rows.product(point, &attempt.state.motion.v) + rows.rate(point);

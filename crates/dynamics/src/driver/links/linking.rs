@@ -167,7 +167,7 @@ pub(crate) fn add_all_forces(system: &System, l: &[f64], force: &mut [f64]) {
 }
 
 /// Adds w Cᵀ L to a system vector; nothing on held unknowns.
-pub(crate) fn add_forces(
+pub(super) fn add_forces(
     (system, rows): (&System, &[LinkRow]),
     factors: &[[f64; 2]],
     l: &[f64],

@@ -26,7 +26,7 @@ impl Links {
         attempt: &mut Attempt,
     ) -> Result<(), Error> {
         let begin = Instant::now();
-        if let Some((operators, _)) = parts.effective.both() {
+        if let Some((operators, _)) = parts.effective_mut().both() {
             operators.begin(&attempt.vectors.work, &mut attempt.vectors.half);
         }
         attempt.vectors.left.clear();
@@ -86,7 +86,7 @@ impl Links {
     }
 
     /// The force of the multipliers as they stand, Σ_z C_zᵀ (w₀ L_k + w₁ L_{k+1}); of several schemes with rows that turn L_k with the rows at the start of the step.
-    pub(crate) fn set_links(&mut self, attempt: &Attempt) {
+    pub(super) fn set_links(&mut self, attempt: &Attempt) {
         let start = self.rows_before(attempt);
         self.force.fill(0.0);
         let system = &*attempt.system;
@@ -163,7 +163,7 @@ impl Links {
     }
 
     /// Holds the rows in the begun solve, without what contact forces change in it.
-    pub(crate) fn hold_links(&mut self, parts: &mut Parts, attempt: &mut Attempt) {
+    fn hold_links(&mut self, parts: &mut Parts, attempt: &mut Attempt) {
         if !attempt.has_links() {
             return;
         }
@@ -193,7 +193,7 @@ impl Links {
             defect[row] = h;
         }
         pushed.fill(0.0);
-        if let Some((operators, _, Some(linking))) = parts.effective.all() {
+        if let Some((operators, _, Some(linking))) = parts.effective_mut().all() {
             let forces = (&mut vectors.work[..], &mut vectors.half[..]);
             linking.hold(&system, operators, forces, (defect, free));
         }
@@ -213,7 +213,7 @@ impl Links {
 
     /// Norm of the largest of the forces that balance in each assembly, N.
     pub(crate) fn scale_of_forces(&self, parts: &mut Parts, attempt: &Attempt) -> f64 {
-        let mut squares = std::mem::take(&mut parts.squares);
+        let mut squares = parts.take_squares();
         self.square_forces(parts, attempt, &mut squares);
         let of = |assembly: &Assembly| {
             let parts = assembly.parts.iter().map(|&part| &squares[part]);
@@ -221,7 +221,7 @@ impl Links {
         };
         let assemblies = attempt.system.assemblies.all.iter();
         let scale = assemblies.map(|assembly| of(assembly).powi(2)).sum::<f64>();
-        parts.squares = squares;
+        parts.keep_squares(squares);
         scale.sqrt()
     }
 
@@ -232,7 +232,7 @@ impl Links {
         attempt: &Attempt,
         squares: &mut Vec<Squares>,
     ) {
-        if !std::mem::replace(&mut parts.pace.is_sized, true) {
+        if !std::mem::replace(&mut parts.pace_mut().is_sized, true) {
             parts.size_of_motion(attempt, squares);
         }
         let factor = attempt.maps.contact();

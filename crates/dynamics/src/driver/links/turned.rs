@@ -52,7 +52,7 @@ impl Links {
     }
 
     /// Makes the rows those of the state.
-    pub(crate) fn turn_rows_at_start(&mut self, attempt: &Attempt) {
+    pub(super) fn turn_rows_at_start(&mut self, attempt: &Attempt) {
         let at = Turned {
             frames: &attempt.state.motion.frames,
             u: &attempt.state.motion.u,

@@ -253,7 +253,7 @@ impl Effective {
     }
 
     /// y = A_held x: what a motion of held unknowns does to the others, N.
-    pub(crate) fn load_of(&self, x: &[f64], y: &mut [f64]) {
+    pub(super) fn load_of(&self, x: &[f64], y: &mut [f64]) {
         y.fill(0.0);
         let Some(now) = &self.now else { return };
         if let Some(matrix) = &now.matrix {
@@ -275,6 +275,12 @@ impl Effective {
         if let Some(whole) = &now.whole {
             now.at.multiply(whole, x, y);
         }
+    }
+
+    /// Whether there are matrices to solve with.
+    pub(crate) fn has_matrices(&self) -> bool {
+        let ready = |now: &Matrices| now.operators.groups.iter().all(|g| g.operator.is_some());
+        self.now.as_ref().is_some_and(ready)
     }
 
     /// The factors, and the compliance that goes with them; none before all are made.
@@ -310,7 +316,7 @@ impl Effective {
     }
 
     /// Squares of the diagonal of the stiffness in A times `x`, by unknown, N².
-    pub(crate) fn stiffness_squares(
+    pub(super) fn stiffness_squares(
         &self,
         (system, maps): (&System, &Maps),
         mut x: impl Iterator<Item = f64>,

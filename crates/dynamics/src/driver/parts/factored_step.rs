@@ -13,7 +13,7 @@ impl Effective {
     /// Lets this step have factors where iterations were chosen for it, not asked for; whether it is so. Iterations may end without
     /// having met the direction along which a tangent is not positive definite: a factor meets it, and another tangent is taken. Passes with friction
     /// may not end where those with D at hand do. `between`: whether internal forces are means over the step.
-    pub(crate) fn leave_iterations(&mut self, system: &System, maps: &Maps, between: bool) -> bool {
+    pub(super) fn leave_iterations(&mut self, system: &System, maps: &Maps, between: bool) -> bool {
         let chosen = system.nonlinear.iteration.solver == Solver::Auto;
         let Some(now) = self
             .now

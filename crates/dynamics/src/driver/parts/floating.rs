@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// σ, unless the matrix asks for more.
-pub(crate) const WEIGHT: f64 = 1e-6;
+const WEIGHT: f64 = 1e-6;
 
 /// Factor by which σ grows where the matrix is not positive definite: a body under pressure has negative stiffness in turns.
 pub(crate) const GROWTH: f64 = 8.0;
@@ -36,6 +36,11 @@ pub(crate) struct Floating {
 }
 
 impl Floating {
+    /// The pieces.
+    pub(crate) fn pieces(&self) -> &Arc<Pieces> {
+        &self.pieces
+    }
+
     /// The pieces of a static stage that supports leave free to move: parts, and where groups of nodes in a part move against each other with
     /// nothing but contacts against it, those groups.
     ///

@@ -53,6 +53,20 @@ pub(crate) fn add_up(
 }
 
 impl Parts {
+    /// Internal forces of the iteration, whose energies are kept; see [`Parts::internal`].
+    ///
+    /// # Errors
+    /// As [`Parts::internal`].
+    pub(crate) fn store(
+        &mut self,
+        attempt: &mut Attempt,
+        at: (Configuration, bool),
+        after: impl Fn(&StepMap) -> f64,
+    ) -> Result<(), Error> {
+        self.stored = self.internal(attempt, at, after)?;
+        Ok(())
+    }
+
     /// Forces of dashpots and of Rayleigh's damping at the velocity of the iteration, N.
     pub(crate) fn evaluate_damping(&mut self, attempt: &mut Attempt) {
         let system = &*attempt.system;

@@ -17,7 +17,7 @@ use crate::step_map::StepMap;
 use crate::system::{NumberedModal, Solver, System};
 
 /// The factor of the matrix of a linear part; adds its diagonal, and where supports of the part move its columns of held unknowns.
-pub(crate) fn linear_part(
+pub(super) fn linear_part(
     system: &System,
     part: &Range<usize>,
     (map, between, (ranks, others)): (&StepMap, bool, (&Ranks, Option<Solver>)),

@@ -26,7 +26,7 @@ impl Parts {
     }
 
     /// Whether the matrix of a part changes within a step.
-    pub(crate) fn is_iterated(&self, attempt: &Attempt, part: usize) -> bool {
+    fn is_iterated(&self, attempt: &Attempt, part: usize) -> bool {
         let system = &*attempt.system;
         if attempt.maps.of(system.parts[part].start).force.x == 0.0 {
             return false;

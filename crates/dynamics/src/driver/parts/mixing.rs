@@ -78,7 +78,7 @@ impl Mixing {
 
     /// Forgets all iterations but the last, after one that made the residual grow: those before it belong to another map.
     /// Where each iteration makes it grow, the last and the next one are what ends that.
-    pub(crate) fn keep_last(&mut self) {
+    pub(super) fn keep_last(&mut self) {
         self.count = self.count.min(1);
     }
 

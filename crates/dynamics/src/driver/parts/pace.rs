@@ -13,6 +13,13 @@ pub(crate) struct Pace {
     pub(crate) is_sized: bool,
 }
 
+impl Pace {
+    /// Begins with a factor that is made in iteration `made`, and has been used in `age` of them.
+    pub(crate) fn begin(&mut self, age: usize, made: usize) {
+        (self.age, self.made) = (age, made);
+    }
+}
+
 /// Squares of norms of the forces of a connected part, or of several, N².
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Squares {

@@ -11,7 +11,7 @@ use crate::step_map::StepMap;
 use crate::system::System;
 
 /// Whether the matrix of a linear part is the lumped mass alone.
-pub(crate) fn is_diagonal(system: &System, part: &Range<usize>, map: &StepMap) -> bool {
+pub(super) fn is_diagonal(system: &System, part: &Range<usize>, map: &StepMap) -> bool {
     map.force.x == 0.0 && !system.mass.couples(part)
 }
 
@@ -27,7 +27,7 @@ pub(crate) fn part_matrix(
 }
 
 /// Some rows of the matrix of a linear part.
-pub(crate) fn rows_of_part(
+pub(super) fn rows_of_part(
     (system, at): (&System, &AtRows),
     part: &Range<usize>,
     map: &StepMap,

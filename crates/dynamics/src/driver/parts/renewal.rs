@@ -352,7 +352,7 @@ fn stiffest_bolt(system: &System) -> Option<f64> {
 }
 
 /// Counts the work with a factor that is dropped.
-pub(crate) fn retire(operator: &Operator, retired: &mut Work) {
+pub(super) fn retire(operator: &Operator, retired: &mut Work) {
     if let Some(stats) = operator.stats() {
         retired.add_factor(stats);
     }

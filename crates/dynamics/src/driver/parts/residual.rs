@@ -45,12 +45,7 @@ impl Parts {
     }
 
     /// Squares of the stiffness of each unknown times its place, N². `places`: factor of the distances from the origin.
-    pub(crate) fn squares_of_places(
-        &self,
-        attempt: &Attempt,
-        places: f64,
-        add: impl FnMut(usize, f64),
-    ) {
+    fn squares_of_places(&self, attempt: &Attempt, places: f64, add: impl FnMut(usize, f64)) {
         let (system, u) = (&attempt.system, &attempt.state.motion.u);
         let sizes = (0..system.unknowns()).map(|unknown| match system.unknowns.kind(unknown) {
             Kind::Translation(axis) => {

@@ -405,7 +405,7 @@ pub(crate) fn norm(vector: &[f64]) -> f64 {
 pub(crate) type Mode = (&'static str, fn(&[f64; 3]) -> [f64; 3]);
 
 /// Rotation of a motion per unit, about the axes of coordinates.
-pub(crate) fn turn_of((_, shape): &Mode) -> [f64; 3] {
+pub(super) fn turn_of((_, shape): &Mode) -> [f64; 3] {
     if shape(&[0.0; 3]) != [0.0; 3] {
         return [0.0; 3];
     }
@@ -415,7 +415,7 @@ pub(crate) fn turn_of((_, shape): &Mode) -> [f64; 3] {
 
 /// The part of an amplitude in a motion of places relative to a centre over a size (m): a turn about the centre is one about the origin
 /// less the way of the centre in it.
-pub(crate) fn of_amplitude(
+pub(super) fn of_amplitude(
     mode: &Mode,
     (centre, size): (&[f64; 3], f64),
     amplitude: &Amplitude,

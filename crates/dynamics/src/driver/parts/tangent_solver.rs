@@ -12,7 +12,7 @@ use crate::system::{Maps, Solver, System};
 
 /// What solves with the tangents of these parts: as asked, else what is predicted to cost less for the largest of them, undeformed, in a step of the size
 /// that the model names. So a run that goes on from a checkpoint chooses the same.
-pub(crate) fn tangent_solver(system: &System, iterated: &[bool], ranks: &Ranks) -> Solver {
+pub(super) fn tangent_solver(system: &System, iterated: &[bool], ranks: &Ranks) -> Solver {
     let asked = system.nonlinear.iteration.solver;
     if asked != Solver::Auto {
         return asked;

@@ -99,7 +99,7 @@ impl Impulses {
 
     /// The impulses I > 0 of the points (ascending) with `I_i (r_i + ½ (D I)_i) = w_i`. `rates`: r of each; `works`: w of
     /// each, positive.
-    pub(crate) fn give_work(
+    pub(super) fn give_work(
         &mut self,
         system: &System,
         rows: &Rows,

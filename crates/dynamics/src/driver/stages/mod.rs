@@ -1,8 +1,9 @@
 //! Stages of a step with the mass alone: impulses of contact points, what a predictor and a projection change.
 
 pub(crate) mod impulse;
-pub(crate) mod predictor;
-pub(crate) mod projection;
+mod predictor;
+mod projection;
+mod restoring;
 
 use carom_system::ContactPair;
 
@@ -16,18 +17,43 @@ use impulse::Impulses;
 /// Stages of a step with the mass alone: impulses of contact points, what a predictor and a projection change.
 pub(crate) struct Stages {
     /// Solver of the stages with the mass alone; none where there is no such stage.
-    pub(crate) impulses: Option<Impulses>,
-    pub(crate) projected: Projected,
-    pub(crate) predictor: Predictor,
-    pub(crate) restoring: Restoring,
+    impulses: Option<Impulses>,
+    projected: Projected,
+    predictor: Predictor,
+    restoring: Restoring,
 }
 
 impl Stages {
+    /// Whether there is a stage with the mass alone.
+    pub(crate) fn are_any(&self) -> bool {
+        self.impulses.is_some()
+    }
+
+    /// Solver of the stages; none where there is no such stage.
+    pub(crate) fn impulses(&self) -> Option<&Impulses> {
+        self.impulses.as_ref()
+    }
+
+    /// The same, to solve with.
+    pub(crate) fn impulses_mut(&mut self) -> Option<&mut Impulses> {
+        self.impulses.as_mut()
+    }
+
+    /// What the impulses after the step did.
+    pub(crate) fn projected(&self) -> &Projected {
+        &self.projected
+    }
+
+    /// Begins a step after which no impulse was given yet.
+    pub(crate) fn forget_projected(&mut self) {
+        self.projected.clear();
+    }
+
     /// Whether all candidates are one problem, whatever they share: where links, weak forms or the mass couple them besides.
     pub(crate) fn is_one_group(&self, contacts: &Contacts, attempt: &Attempt) -> bool {
         let sums =
             self.impulses.is_some() && sums_compliances(&attempt.system, attempt.maps.first());
-        sums || attempt.has_links() || !contacts.weak.none()
+        sums || attempt.has_links() || !contacts.weak().none()
     }
 
     /// Nᵀ P + Tᵀ t of the forces as they stand, into `contact`, and the acceleration that they give by themselves where the scheme
@@ -35,10 +61,10 @@ impl Stages {
     pub(crate) fn spread(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
         let f = &mut attempt.vectors.contact;
         f.fill(0.0);
-        for point in contacts.active.within(0..attempt.system.points()) {
+        for point in contacts.active().within(0..attempt.system.points()) {
             let force = attempt.next.interface.force[point];
             if force != 0.0 {
-                contacts.pairing.rows.add_force(point, force, f);
+                contacts.normal_rows().add_force(point, force, f);
             }
         }
         contacts.spread_friction(attempt);
@@ -60,10 +86,9 @@ impl Stages {
         if let Some(gap) = self.predictor.gap(point) {
             return gap;
         }
-        match contacts.candidates.binary_search(&(point as u32)) {
-            Ok(k) => contacts.free_gaps[k],
-            Err(_) => attempt.next.interface.gap[point],
-        }
+        contacts
+            .free_gap(point)
+            .unwrap_or(attempt.next.interface.gap[point])
     }
 
     /// Those of a system, which is `released` in the dynamics.
@@ -93,7 +118,7 @@ impl Stages {
 
 /// Points and forces of the stage.
 #[derive(Default)]
-pub(crate) struct Predictor {
+struct Predictor {
     pub(crate) points: Vec<u32>,
     /// R of each point, kg m.
     pub(crate) forces: Vec<f64>,
@@ -157,7 +182,7 @@ impl Projected {
 
 /// Work that the points which close take in the step.
 #[derive(Default)]
-pub(crate) struct Restoring {
+struct Restoring {
     /// w of each point with an impulse, J.
     pub(crate) works: Vec<f64>,
 }

@@ -30,7 +30,7 @@ impl Stages {
         contacts.stack(attempt);
         let dt = attempt.dt;
         let predictor = &mut self.predictor;
-        let (motion, rows) = (&mut attempt.state.motion, &contacts.pairing.rows);
+        let (motion, rows) = (&mut attempt.state.motion, contacts.normal_rows());
         predictor.kept.clone_from(&motion.a);
         motion.a.fill(0.0);
         predictor.gaps.clear();
@@ -55,11 +55,11 @@ impl Stages {
     }
 
     /// Adds the points that the projection so far leaves behind the surface; whether there are any.
-    pub(crate) fn add_penetrating(&mut self, contacts: &Contacts, attempt: &Attempt) -> bool {
+    fn add_penetrating(&mut self, contacts: &Contacts, attempt: &Attempt) -> bool {
         let Some(stage) = &self.impulses else {
             return false;
         };
-        let (rows, predictor) = (&contacts.pairing.rows, &mut self.predictor);
+        let (rows, predictor) = (contacts.normal_rows(), &mut self.predictor);
         let before = predictor.points.len();
         for point in 0..rows.len() as u32 {
             let at = point as usize;
@@ -69,7 +69,7 @@ impl Stages {
             };
             let pull = match before {
                 0 => 0.0,
-                _ => contacts.weak.pull(&attempt.system, at),
+                _ => contacts.weak().pull(&attempt.system, at),
             };
             if predictor.gaps[at] + moved - pull < 0.0
                 && predictor.points[..before].binary_search(&point).is_err()
@@ -81,11 +81,7 @@ impl Stages {
         predictor.points.len() > before
     }
 
-    pub(crate) fn solve_predictor(
-        &mut self,
-        contacts: &mut Contacts,
-        attempt: &Attempt,
-    ) -> Result<(), Error> {
+    fn solve_predictor(&mut self, contacts: &mut Contacts, attempt: &Attempt) -> Result<(), Error> {
         let predictor = &mut self.predictor;
         let Some(stage) = &mut self.impulses else {
             return Ok(());
@@ -100,12 +96,12 @@ impl Stages {
         predictor.present.resize(predictor.points.len(), 0.0);
         let (values, present) = (&predictor.values, &predictor.present);
         let dt = attempt.dt;
-        let weak = (&contacts.weak, 0.5 * dt * dt);
+        let weak = (contacts.weak(), 0.5 * dt * dt);
         let points = &predictor.points;
         let solved = stage.solve(
             &attempt.system,
             weak,
-            &contacts.pairing.rows,
+            contacts.normal_rows(),
             points,
             values,
             present,
@@ -113,7 +109,7 @@ impl Stages {
         predictor.forces.clone_from(&stage.added);
         let forces = points.iter().zip(&predictor.forces);
         let forces = forces.map(|(&point, &force)| (point as usize, force));
-        contacts.weak.take(&attempt.system, forces, 2.0 / (dt * dt));
+        contacts.take_weak_forces(&attempt.system, forces, 2.0 / (dt * dt));
         solved.map_err(|failure| attempt.interface_error(failure, &self.predictor.points))
     }
 
@@ -127,7 +123,7 @@ impl Stages {
         let terms = predictor.points.iter().zip(&predictor.forces);
         let sum: f64 = terms
             .map(|(&point, force)| {
-                let on = |x: &[f64]| contacts.pairing.rows.product(point as usize, x);
+                let on = |x: &[f64]| contacts.normal_rows().product(point as usize, x);
                 force * (on(&new.u) - on(&old.u) - dt * on(&old.v) - on(&stage.change))
             })
             .sum();

@@ -17,7 +17,7 @@ use crate::step_forces::OutsideForces;
 impl Stages {
     /// Works of the impulses after the step, J: on the motion relative to obstacles, and of the obstacles.
     pub(crate) fn works_of_impulses(&self, contacts: &Contacts) -> (f64, f64) {
-        let (projected, rows) = (&self.projected, &contacts.pairing.rows);
+        let (projected, rows) = (&self.projected, contacts.normal_rows());
         let points = projected.points.iter().map(|&point| point as usize);
         let of_obstacle = |point: usize| -projected.impulse(point) * rows.rate(point);
         (projected.work.iter().sum(), points.map(of_obstacle).sum())
@@ -28,7 +28,7 @@ impl Stages {
         let points = &mut self.projected.points;
         let [before, now] = [&attempt.state, &attempt.next].map(|state| &state.interface.status);
         let mut closing = false;
-        for &point in &contacts.candidates {
+        for &point in contacts.candidates() {
             let at = point as usize;
             if now[at] != Status::Open && attempt.system.point(at).0.law.projects() {
                 points.push(point);
@@ -46,7 +46,7 @@ impl Stages {
     ) -> Result<OutsideForces<Resultant>, Error> {
         let weights = attempt.maps.first().contact_impulse;
         let [old, new] = [&attempt.state, &attempt.next].map(|state| &state.interface);
-        let rows = &contacts.pairing.rows;
+        let rows = contacts.normal_rows();
         let projected = &mut self.projected;
         projected.values.clear();
         projected.present.clear();
@@ -63,7 +63,7 @@ impl Stages {
 
     /// Adds what the impulses of the stage change in the velocity, from the rates in `values`; impulses on the momentum from
     /// contacts, supports and links.
-    pub(crate) fn jump_velocity(
+    pub(super) fn jump_velocity(
         &mut self,
         contacts: &Contacts,
         attempt: &mut Attempt,
@@ -83,7 +83,7 @@ impl Stages {
             ..
         } = &mut attempt.vectors;
         known.fill(0.0);
-        let (projected, rows) = (&mut self.projected, &contacts.pairing.rows);
+        let (projected, rows) = (&mut self.projected, contacts.normal_rows());
         for (k, &point) in projected.points.iter().enumerate() {
             let at = point as usize;
             let impulse = stage.added[k];
@@ -134,7 +134,7 @@ impl Stages {
             let at = point as usize;
             // points that the projection lets go have no acceleration to lose: their force ends with the step
             projected.values.push(match stage.active[k] {
-                true => contacts.pairing.rows.product(at, &attempt.next.motion.a),
+                true => contacts.normal_rows().product(at, &attempt.next.motion.a),
                 false => f64::INFINITY,
             });
             projected.present.push(attempt.next.interface.force[at]);
@@ -149,8 +149,7 @@ impl Stages {
         for (k, &point) in self.projected.points.iter().enumerate() {
             interface.carried[point as usize] += stage.added[k];
             contacts
-                .pairing
-                .rows
+                .normal_rows()
                 .add_force(point as usize, stage.added[k], known);
         }
         let before = dot(known, &motion.a);
@@ -168,11 +167,7 @@ impl Stages {
         Ok(before + dot(known, &motion.a))
     }
 
-    pub(crate) fn solve_impulses(
-        &mut self,
-        contacts: &Contacts,
-        attempt: &Attempt,
-    ) -> Result<(), Error> {
+    fn solve_impulses(&mut self, contacts: &Contacts, attempt: &Attempt) -> Result<(), Error> {
         let Projected {
             points,
             values,
@@ -183,11 +178,11 @@ impl Stages {
             return Ok(());
         };
         // laws with projection have no weak form: the ratio of impulse and force enters nothing
-        let weak = (&contacts.weak, 1.0);
+        let weak = (contacts.weak(), 1.0);
         let solved = stage.solve(
             &attempt.system,
             weak,
-            &contacts.pairing.rows,
+            contacts.normal_rows(),
             points,
             values,
             present,

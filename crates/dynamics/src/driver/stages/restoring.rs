@@ -5,28 +5,24 @@
 
 use carom_contact::law::Status;
 
-use super::Driver;
-use super::stages::Projected;
+use super::{Projected, Stages};
+use crate::driver::attempt::Attempt;
+use crate::driver::contacts::Contacts;
 use crate::step_terms::Jump;
 
-impl Driver {
-    /// Gives the velocity back what the contact took, if the scheme does so.
-    pub(super) fn restore(&mut self) {
-        if !self.attempt.system.scheme.get().restores_contact_work()
-            || self.attempt.maps.is_static()
-        {
-            return;
-        }
-        self.stages.projected.clear();
+impl Stages {
+    /// Gives the velocity at the end of an attempt what the contact took; the jump, if there is one.
+    pub(crate) fn restore(&mut self, contacts: &Contacts, attempt: &mut Attempt) -> Option<Jump> {
+        self.projected.clear();
         let (rows, projected, works) = (
-            &self.contacts.pairing.rows,
-            &mut self.stages.projected,
-            &mut self.stages.restoring.works,
+            contacts.normal_rows(),
+            &mut self.projected,
+            &mut self.restoring.works,
         );
-        let [old, new] = [&self.attempt.state, &self.attempt.next];
+        let [old, new] = [&attempt.state, &attempt.next];
         works.clear();
         projected.values.clear();
-        for &point in &self.contacts.candidates {
+        for &point in contacts.candidates() {
             let at = point as usize;
             let [before, now] = [old, new].map(|state| state.interface.status[at]);
             if before != Status::Open || now == Status::Open {
@@ -34,7 +30,7 @@ impl Driver {
             }
             let on = |x: &[f64]| rows.product(at, x);
             let obstacle = rows.rate(at);
-            let way = on(&new.motion.u) - on(&old.motion.u) + self.attempt.dt * obstacle;
+            let way = on(&new.motion.u) - on(&old.motion.u) + attempt.dt * obstacle;
             let taken = -new.interface.force[at] * way;
             if taken > 0.0 {
                 projected.points.push(point);
@@ -42,22 +38,21 @@ impl Driver {
                 works.push(taken);
             }
         }
-        let Some(stage) = &mut self.stages.impulses else {
-            return;
+        let Some(stage) = &mut self.impulses else {
+            return None;
         };
         if works.is_empty() {
-            return;
+            return None;
         }
-        let Projected { points, values, .. } = &self.stages.projected;
-        stage.give_work(&self.attempt.system, rows, points, values, works);
-        let impulses = self.stages.jump_velocity(&self.contacts, &mut self.attempt);
-        let (work, work_obstacles) = self.stages.works_of_impulses(&self.contacts);
-        let jump = Jump {
+        let Projected { points, values, .. } = &self.projected;
+        stage.give_work(&attempt.system, rows, points, values, works);
+        let impulses = self.jump_velocity(contacts, attempt);
+        let (work, work_obstacles) = self.works_of_impulses(contacts);
+        Some(Jump {
             impulses,
             work,
             work_obstacles,
             ..Jump::default()
-        };
-        self.enter_jump(jump);
+        })
     }
 }
