@@ -21,33 +21,36 @@ impl Zones {
     /// smallest. The state is then the one before the step.
     pub fn step(&mut self) -> Result<(), Error> {
         let forced = self
+            .clock
             .forced
-            .is_some_and(|every| (self.step + 1).is_multiple_of(every));
-        let largest = self.largest;
-        let Some(rules) = self.rules else {
+            .is_some_and(|every| (self.clock.step + 1).is_multiple_of(every));
+        let largest = self.clock.largest;
+        let Some(rules) = self.clock.rules else {
             let outcome = self.attempt_once(forced);
             if outcome.is_err() {
                 self.go_back();
             }
-            self.attempts = 1;
+            self.clock.attempts = 1;
             outcome?;
-            let (step, time) = (self.step, self.time);
+            let (step, time) = (self.clock.step, self.clock.time);
             self.accept();
-            self.control.take(None, (step, time, self.dt), largest);
+            self.clock
+                .control
+                .take(None, (step, time, self.clock.dt), largest);
             return Ok(());
         };
-        let first = (self.control, self.control.dt);
+        let first = (self.clock.control, self.clock.control.dt);
         let (mut control, attempts) = adapt(self, first, (&rules, largest), forced)?;
-        self.attempts = attempts;
-        let (step, time) = (self.step, self.time);
+        self.clock.attempts = attempts;
+        let (step, time) = (self.clock.step, self.clock.time);
         self.accept();
-        control.take(Some(&rules), (step, time, self.dt), largest);
-        self.control = control;
+        control.take(Some(&rules), (step, time, self.clock.dt), largest);
+        self.clock.control = control;
         Ok(())
     }
 
     fn attempt_once(&mut self, forced: bool) -> Result<(), Error> {
-        let dt = self.dt;
+        let dt = self.clock.dt;
         self.try_size(dt, dt)?;
         if forced {
             self.go_back();
@@ -59,10 +62,10 @@ impl Zones {
     /// Computes an outer step of size `dt` before one of size `next` (both s), which is not accepted.
     fn try_size(&mut self, dt: f64, next: f64) -> Result<(), Error> {
         self.take_size(dt, next)?;
-        self.first_cut = f64::INFINITY;
-        self.products[1] = 0;
+        self.clock.first_cut = f64::INFINITY;
+        self.response.products[1] = 0;
         for (k, driver) in self.drivers.iter().enumerate() {
-            if changes_state((&self.substeps, &self.between), k)
+            if changes_state((&self.clock.substeps, &self.between), k)
                 && let Some(saved) = &mut self.saved[k]
             {
                 saved.clone_from(driver.state());
@@ -79,49 +82,49 @@ impl Zones {
             self.drivers.iter().any(|driver| driver.may_touch(dt))
                 || between.is_some_and(|between| between.may_touch(dt))
         };
-        let [of_shock, far] = &self.choices;
+        let [of_shock, far] = &self.clock.choices;
         let choice = match of_shock == far || near() {
             true => of_shock,
             false => far,
         };
-        let same = *choice == self.substeps && dt == self.dt;
-        if same && next == self.next && !self.stale {
+        let same = *choice == self.clock.substeps && dt == self.clock.dt;
+        if same && next == self.clock.next && !self.response.stale {
             return Ok(());
         }
         let now = Kept {
-            substeps: std::mem::replace(&mut self.substeps, choice.clone()),
-            dt: std::mem::replace(&mut self.dt, dt),
+            substeps: std::mem::replace(&mut self.clock.substeps, choice.clone()),
+            dt: std::mem::replace(&mut self.clock.dt, dt),
             solver: None,
             outer: OuterResponse::None,
         };
-        self.next = next;
-        for (driver, m) in self.drivers.iter_mut().zip(&self.substeps) {
+        self.clock.next = next;
+        for (driver, m) in self.drivers.iter_mut().zip(&self.clock.substeps) {
             let m = f64::from(*m);
             let next = if m > 1.0 { dt } else { next };
             driver.resize(dt / m, next / m);
         }
-        if take(&mut self.stale) {
-            self.kept.clear();
+        if take(&mut self.response.stale) {
+            self.response.kept.clear();
             return self.factorise();
         }
         if same {
             return Ok(());
         }
-        if self.solver.is_some() {
-            if self.kept.len() == KEPT {
-                self.kept.remove(0);
+        if self.response.solver.is_some() {
+            if self.response.kept.len() == KEPT {
+                self.response.kept.remove(0);
             }
-            self.kept.push(Kept {
-                solver: self.solver.take(),
-                outer: take(&mut self.outer),
+            self.response.kept.push(Kept {
+                solver: self.response.solver.take(),
+                outer: take(&mut self.response.outer),
                 ..now
             });
         }
-        let of_size = |kept: &Kept| kept.substeps == self.substeps && kept.dt == dt;
-        match self.kept.iter().position(of_size) {
+        let of_size = |kept: &Kept| kept.substeps == self.clock.substeps && kept.dt == dt;
+        match self.response.kept.iter().position(of_size) {
             Some(place) => {
-                let kept = self.kept.remove(place);
-                (self.solver, self.outer) = (kept.solver, kept.outer);
+                let kept = self.response.kept.remove(place);
+                (self.response.solver, self.response.outer) = (kept.solver, kept.outer);
                 Ok(())
             }
             None => self.factorise(),
@@ -130,20 +133,24 @@ impl Zones {
 
     /// Before the last inner step of a zone in an outer one: the next has another size.
     pub(crate) fn size_inner(&mut self, zone: usize, is_last: bool) {
-        if self.next == self.dt {
+        if self.clock.next == self.clock.dt {
             return;
         }
-        let m = f64::from(self.substeps[zone]);
-        let next = if is_last { self.next } else { self.dt };
-        self.drivers[zone].resize(self.dt / m, next / m);
+        let m = f64::from(self.clock.substeps[zone]);
+        let next = if is_last {
+            self.clock.next
+        } else {
+            self.clock.dt
+        };
+        self.drivers[zone].resize(self.clock.dt / m, next / m);
     }
 
     /// Looks at the points of a zone with inner steps in the first of them, which is complete and not accepted.
     pub(crate) fn look_ahead(&mut self, zone: usize) {
-        if let Some(rules) = &self.rules {
-            let planned = self.control.dt / f64::from(self.substeps[zone]);
-            let cut = self.drivers[zone].first_cut((rules, self.largest), planned);
-            self.first_cut = self.first_cut.min(cut);
+        if let Some(rules) = &self.clock.rules {
+            let planned = self.clock.control.dt / f64::from(self.clock.substeps[zone]);
+            let cut = self.drivers[zone].first_cut((rules, self.clock.largest), planned);
+            self.clock.first_cut = self.clock.first_cut.min(cut);
         }
     }
 }
@@ -158,14 +165,14 @@ impl Attempts for Zones {
     }
 
     fn first_cut(&self, rules: &Adaptive, planned: f64) -> f64 {
-        let largest = (rules, self.largest);
-        let whole = self.drivers.iter().zip(&self.substeps);
+        let largest = (rules, self.clock.largest);
+        let whole = self.drivers.iter().zip(&self.clock.substeps);
         let whole = whole.filter(|(_, m)| **m == 1);
         let cuts = whole.map(|(driver, _)| driver.first_cut(largest, planned));
-        let first = cuts.fold(self.first_cut, f64::min);
+        let first = cuts.fold(self.clock.first_cut, f64::min);
         match &self.between {
             Some(between) => {
-                first.min(between.first_cut(&self.drivers, largest, [self.dt, planned]))
+                first.min(between.first_cut(&self.drivers, largest, [self.clock.dt, planned]))
             }
             None => first,
         }
@@ -182,7 +189,7 @@ impl Attempts for Zones {
                 driver.state().ledger.largest_energy,
             ],
         };
-        let ledgers = self.drivers.iter().zip(&self.substeps).map(ended);
+        let ledgers = self.drivers.iter().zip(&self.clock.substeps).map(ended);
         let [free, largest] = ledgers.fold([0.0; 2], |sum, one| [sum[0] + one[0], sum[1] + one[1]]);
         free > fraction * largest
     }
@@ -192,6 +199,6 @@ impl Attempts for Zones {
     }
 
     fn instant(&self) -> (u64, f64) {
-        (self.step, self.time)
+        (self.clock.step, self.clock.time)
     }
 }

@@ -12,18 +12,18 @@ const MANY: usize = 8;
 impl Zones {
     /// Takes the present states as origins if the step just accepted took many passes and they are new.
     pub(crate) fn judge_origins(&mut self) {
-        if self.passes <= MANY {
+        if self.response.passes <= MANY {
             return;
         }
         let origins: Vec<Origin> = self.drivers.iter().map(Origin::of).collect();
-        if origins != self.origins {
+        if origins != self.response.origins {
             self.start_from(origins);
         }
     }
 
     /// Makes these the origins of H from the next step on.
     pub(crate) fn start_from(&mut self, origins: Vec<Origin>) {
-        self.origins = origins;
-        self.stale = true;
+        self.response.origins = origins;
+        self.response.stale = true;
     }
 }

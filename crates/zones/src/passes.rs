@@ -25,41 +25,41 @@ impl Zones {
     /// (0 pointwise, 1 of the outer step) if not.
     pub(crate) fn corrected(&mut self, which: usize) -> Result<bool, Error> {
         let speed = speed(&self.drivers);
-        let rows = self.defect.iter().zip(&self.norms).enumerate();
+        let rows = self.links.defect.iter().zip(&self.links.norms).enumerate();
         let (worst, row) = rows.fold((0.0, 0), |worst: (f64, usize), (row, (d, n))| {
             match d.abs() / n {
                 missed if missed > worst.0 => (missed, row),
                 _ => worst,
             }
         });
-        let gains = self.moves.is_empty() || worst < GAIN * self.worst;
-        (self.worst, self.worst_row) = (worst, row);
+        let gains = self.links.moves.is_empty() || worst < GAIN * self.links.worst;
+        (self.links.worst, self.links.worst_row) = (worst, row);
         if worst <= TOLERANCE * speed {
             return Ok(true);
         }
-        if self.solver.is_none() {
+        if self.response.solver.is_none() {
             return Ok(true);
         }
         self.solve_links(0.1 * TOLERANCE * speed)?;
-        let [old, new] = &self.multipliers;
+        let [old, new] = &self.links.multipliers;
         let target = match which {
-            0 => &self.pointwise[1],
+            0 => &self.links.pointwise[1],
             _ => new,
         };
         // at rest all velocities are rounding; then the forces tell what is small
         let forces = largest(old).max(largest(target));
-        let change = largest(&self.defect);
+        let change = largest(&self.links.defect);
         if change <= TOLERANCE * forces
             || !gains && self.force_of_change() <= rounding(&self.drivers)
         {
             return Ok(true);
         }
-        self.moves.next(&mut self.defect);
+        self.links.moves.next(&mut self.links.defect);
         let target = match which {
-            0 => &mut self.pointwise[1],
-            _ => &mut self.multipliers[1],
+            0 => &mut self.links.pointwise[1],
+            _ => &mut self.links.multipliers[1],
         };
-        for (l, move_) in target.iter_mut().zip(&self.defect) {
+        for (l, move_) in target.iter_mut().zip(&self.links.defect) {
             *l += move_;
         }
         Ok(false)
@@ -67,7 +67,7 @@ impl Zones {
 
     /// Most passes over an outer step with multipliers that are linear in it.
     pub(crate) fn most_passes(&self) -> usize {
-        match self.turning {
+        match self.links.turning {
             None => MOST_PASSES,
             Some(_) => MOST_TURNING_PASSES,
         }
@@ -75,20 +75,24 @@ impl Zones {
 
     /// The largest force on one side by the change of a multiplier, N.
     fn force_of_change(&self) -> f64 {
-        let changes = self.defect.iter().zip(&self.norms);
+        let changes = self.links.defect.iter().zip(&self.links.norms);
         changes.fold(0.0, |most, (l, norm)| f64::max(most, 0.5 * norm * l.abs()))
     }
 
     pub(crate) fn parted(&self) -> Error {
-        let row = self.worst_row;
-        let link = self.links.iter().find(|(_, rows)| rows.contains(&row));
+        let row = self.links.worst_row;
+        let link = self
+            .links
+            .named
+            .iter()
+            .find(|(_, rows)| rows.contains(&row));
         Error::Link {
-            step: self.step + 1,
+            step: self.clock.step + 1,
             link: link.map_or(String::new(), |(name, _)| name.clone()),
-            passes: self.passes,
-            defect: self.worst,
-            dt: self.dt,
-            cause: match (&self.turning, self.rules) {
+            passes: self.response.passes,
+            defect: self.links.worst,
+            dt: self.clock.dt,
+            cause: match (&self.links.turning, self.clock.rules) {
                 (Some(_), None) => TURNING,
                 (Some(_), Some(_)) => TURNING_ADAPTIVE,
                 (None, _) => "",

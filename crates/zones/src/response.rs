@@ -28,28 +28,30 @@ impl Zones {
     /// # Errors
     /// Redundant rows, an effective matrix that is not positive definite.
     pub fn solve_without_matrix(&mut self) -> Result<(), Error> {
-        let equal = self.substeps.iter().all(|m| *m == 1);
-        if !equal && self.kind == LinkKind::PrakashHjelmstad {
-            let zones = (&mut self.drivers[..], &self.origins[..]);
-            let links = (&self.rows, self.norms.len());
-            let iterated = IteratedLinks::new(zones, links, (&self.substeps, self.dt))?;
-            self.solver = Some(LinkSolver::Iterated(Box::new(iterated)));
+        let equal = self.clock.substeps.iter().all(|m| *m == 1);
+        if !equal && self.links.kind == LinkKind::PrakashHjelmstad {
+            let zones = (&mut self.drivers[..], &self.response.origins[..]);
+            let links = (&self.links.rows, self.links.norms.len());
+            let iterated = IteratedLinks::new(zones, links, (&self.clock.substeps, self.clock.dt))?;
+            self.response.solver = Some(LinkSolver::Iterated(Box::new(iterated)));
             return Ok(());
         }
         if !equal {
-            let zones = self.drivers.iter_mut().zip(&self.origins);
-            let outer = zones.zip(&self.substeps).map(|((driver, origin), m)| {
-                let zone = (*m == 1).then(|| driver.linearised(origin));
-                zone.transpose()
-            });
-            self.outer = OuterResponse::Steps(outer.collect::<Result<_, _>>()?);
+            let zones = self.drivers.iter_mut().zip(&self.response.origins);
+            let outer = zones
+                .zip(&self.clock.substeps)
+                .map(|((driver, origin), m)| {
+                    let zone = (*m == 1).then(|| driver.linearised(origin));
+                    zone.transpose()
+                });
+            self.response.outer = OuterResponse::Steps(outer.collect::<Result<_, _>>()?);
         }
-        self.solver = Some(LinkSolver::Factor(self.joined()?));
+        self.response.solver = Some(LinkSolver::Factor(self.joined()?));
         Ok(())
     }
 
     fn joined(&self) -> Result<Condensed, Error> {
-        let zones = self.drivers.iter().zip(&self.rows);
+        let zones = self.drivers.iter().zip(&self.links.rows);
         let answers: Vec<Answer> = zones
             .map(|(driver, rows)| {
                 let (mass, stiffness, velocity) = driver.effective();
@@ -57,7 +59,7 @@ impl Zones {
                 answer((driver.system(), rows), [mass, stiffness], scale)
             })
             .collect();
-        let joined = Joined::new(&answers, self.norms.len())?;
+        let joined = Joined::new(&answers, self.links.norms.len())?;
         Ok(Condensed::Joined(Box::new(joined)))
     }
 
@@ -65,17 +67,17 @@ impl Zones {
     pub(crate) fn factorise(&mut self) -> Result<(), Error> {
         let begin = Instant::now();
         let made = self.make_solver();
-        self.link_time += begin.elapsed();
+        self.response.link_time += begin.elapsed();
         made
     }
 
     fn make_solver(&mut self) -> Result<(), Error> {
-        if let Some(links) = &mut self.turning {
-            links.at_origins(&self.origins, &mut self.rows);
+        if let Some(links) = &mut self.links.turning {
+            links.at_origins(&self.response.origins, &mut self.links.rows);
         }
-        let n = self.norms.len();
-        let equal = self.substeps.iter().all(|m| *m == 1);
-        let few = match equal || self.products[0] >= n as u64 {
+        let n = self.links.norms.len();
+        let equal = self.clock.substeps.iter().all(|m| *m == 1);
+        let few = match equal || self.response.products[0] >= n as u64 {
             true => DENSE,
             false => FEW,
         };
@@ -87,44 +89,44 @@ impl Zones {
     }
 
     fn factorise_dense(&mut self) -> Result<(), Error> {
-        let n = self.norms.len();
+        let n = self.links.norms.len();
         let (mut h, mut outer) = (vec![0.0; n * n], vec![0.0; n * n]);
         for (k, driver) in self.drivers.iter_mut().enumerate() {
-            let rows = &self.rows[k];
+            let rows = &self.links.rows[k];
             let steps = Steps {
-                count: match self.kind {
+                count: match self.links.kind {
                     LinkKind::GravouilCombescure => 1,
-                    LinkKind::PrakashHjelmstad => self.substeps[k],
+                    LinkKind::PrakashHjelmstad => self.clock.substeps[k],
                 },
                 growth: Growth::Linear,
             };
-            let mut zone = driver.linearised(&self.origins[k])?;
+            let mut zone = driver.linearised(&self.response.origins[k])?;
             let [own, _] = driver.answers(&mut zone, rows, steps)?;
             for (i, (row, _)) in rows.iter().enumerate() {
                 for (j, (column, _)) in rows.iter().enumerate() {
                     let place = *row as usize * n + *column as usize;
                     let entry = 0.5 * (own[i * rows.len() + j] + own[j * rows.len() + i]);
                     h[place] += entry;
-                    if self.substeps[k] == 1 {
+                    if self.clock.substeps[k] == 1 {
                         outer[place] += entry;
                     }
                 }
             }
         }
-        self.outer = OuterResponse::Matrix(outer);
+        self.response.outer = OuterResponse::Matrix(outer);
         hold_empty_rows(n, &mut h);
         let factor = DenseCholesky::new(n, &h);
         let factor = factor.map_err(|cause| carom_dynamics::Error::Redundant { rows: n, cause })?;
-        self.solver = Some(LinkSolver::Factor(Condensed::Dense(factor)));
+        self.response.solver = Some(LinkSolver::Factor(Condensed::Dense(factor)));
         Ok(())
     }
 
     /// Makes H from the next step on where as many products were made as it has columns.
     pub(crate) fn judge_solver(&mut self) {
-        let n = self.norms.len();
-        let iterates = matches!(self.solver, Some(LinkSolver::Iterated(_)));
-        if iterates && n <= DENSE && self.products[0] >= n as u64 {
-            self.stale = true;
+        let n = self.links.norms.len();
+        let iterates = matches!(self.response.solver, Some(LinkSolver::Iterated(_)));
+        if iterates && n <= DENSE && self.response.products[0] >= n as u64 {
+            self.response.stale = true;
         }
     }
 
@@ -134,19 +136,20 @@ impl Zones {
     /// Iterations that do not end.
     pub(crate) fn solve_links(&mut self, goal: f64) -> Result<(), Error> {
         let begin = Instant::now();
-        let solved = match &mut self.solver {
+        let solved = match &mut self.response.solver {
             None => Ok(()),
             Some(LinkSolver::Factor(factor)) => {
-                factor.solve(&mut self.defect);
+                factor.solve(&mut self.links.defect);
                 Ok(())
             }
             Some(LinkSolver::Iterated(iterated)) => {
-                let zones = (&mut self.drivers[..], &self.rows);
-                let solved = iterated.solve(zones, (&mut self.defect, &self.norms), goal);
-                solved.map(|products| self.products[1] += products)
+                let zones = (&mut self.drivers[..], &self.links.rows);
+                let solved =
+                    iterated.solve(zones, (&mut self.links.defect, &self.links.norms), goal);
+                solved.map(|products| self.response.products[1] += products)
             }
         };
-        self.link_time += begin.elapsed();
+        self.response.link_time += begin.elapsed();
         solved
     }
 
@@ -156,7 +159,7 @@ impl Zones {
         multipliers: &[f64],
         (factor, out): (f64, &mut [f64]),
     ) -> Result<(), Error> {
-        match &mut self.outer {
+        match &mut self.response.outer {
             OuterResponse::None => {}
             OuterResponse::Matrix(matrix) => {
                 for (i, out) in out.iter_mut().enumerate() {
@@ -164,8 +167,10 @@ impl Zones {
                 }
             }
             OuterResponse::Steps(zones) => {
-                for ((zone, driver), rows) in
-                    zones.iter_mut().zip(&mut self.drivers).zip(&self.rows)
+                for ((zone, driver), rows) in zones
+                    .iter_mut()
+                    .zip(&mut self.drivers)
+                    .zip(&self.links.rows)
                 {
                     let Some(zone) = zone else { continue };
                     let steps = Steps {

@@ -14,7 +14,7 @@ use crate::moves::Moves;
 use crate::stage::StageEnd;
 use crate::step::changes_state;
 use crate::turning::{ByZone, TurningLinks};
-use crate::zones::Zones;
+use crate::zones::{LinkResponse, OuterSteps, ZoneLinks, Zones};
 use carom_dynamics::condensed::{Answer, Condensed, DENSE, Joined};
 use carom_dynamics::linearised::Origin;
 use carom_dynamics::operator::Operators;
@@ -64,49 +64,56 @@ impl Zones {
             changes_state((&most, &between), zone).then(|| driver.state().clone())
         });
         let saved = saved.collect();
+        let (dt, zero) = (zoned.model.dt, || vec![0.0; count]);
         let mut zones = Zones {
+            response: LinkResponse {
+                solver: None,
+                origins: drivers.iter().map(Origin::of).collect(),
+                stale: false,
+                outer: OuterResponse::None,
+                kept: Vec::new(),
+                passes: 0,
+                all_passes: 0,
+                products: [0; 2],
+                link_time: Duration::ZERO,
+            },
+            clock: OuterSteps {
+                choices: [substeps.clone(), far],
+                substeps,
+                rules: zoned.model.adaptive,
+                largest: dt,
+                control: Control::start(dt),
+                attempts: 0,
+                first_cut: f64::INFINITY,
+                dt,
+                next: dt,
+                sizes: [dt; 2],
+                step: 0,
+                time: 0.0,
+                forced: None,
+            },
+            links: ZoneLinks {
+                named: links,
+                kind: zoned.kind,
+                rows,
+                turning,
+                norms,
+                earlier: [multipliers.clone(), multipliers.clone()],
+                multipliers: [multipliers.clone(), multipliers],
+                mixes: Vec::new(),
+                works: [Vec::new(), Vec::new()],
+                free: [zero(), zero()],
+                pointwise: [zero(), zero()],
+                defect: zero(),
+                worst: 0.0,
+                worst_row: 0,
+                moves: Moves::default(),
+            },
             between,
             saved,
-            origins: drivers.iter().map(Origin::of).collect(),
-            stale: false,
             drivers,
-            choices: [substeps.clone(), far],
-            substeps,
-            kept: Vec::new(),
             contacts,
-            rows,
-            turning,
-            norms,
-            links,
-            kind: zoned.kind,
-            rules: zoned.model.adaptive,
-            largest: zoned.model.dt,
-            control: Control::start(zoned.model.dt),
-            attempts: 0,
-            first_cut: f64::INFINITY,
-            dt: zoned.model.dt,
-            next: zoned.model.dt,
-            sizes: [zoned.model.dt; 2],
-            step: 0,
-            time: 0.0,
-            earlier: [multipliers.clone(), multipliers.clone()],
-            multipliers: [multipliers.clone(), multipliers],
-            solver: None,
-            outer: OuterResponse::None,
             samples: Vec::new(),
-            passes: 0,
-            all_passes: 0,
-            products: [0; 2],
-            defect: vec![0.0; count],
-            worst: 0.0,
-            worst_row: 0,
-            free: [vec![0.0; count], vec![0.0; count]],
-            pointwise: [vec![0.0; count], vec![0.0; count]],
-            moves: Moves::default(),
-            link_time: Duration::ZERO,
-            mixes: Vec::new(),
-            works: [Vec::new(), Vec::new()],
-            forced: None,
         };
         zones.start_works();
         zones.factorise()?;
@@ -118,8 +125,8 @@ impl Zones {
 
     /// No work yet; Λ before the first step is L₀.
     fn start_works(&mut self) {
-        let first = &self.multipliers[0];
-        let force = |rows: &Vec<(u32, LinkRow)>| match self.turning {
+        let first = &self.links.multipliers[0];
+        let force = |rows: &Vec<(u32, LinkRow)>| match self.links.turning {
             None => first.clone(),
             Some(_) => {
                 let terms = |(row, terms): &(u32, LinkRow)| {
@@ -130,8 +137,11 @@ impl Zones {
             }
         };
         let mixes = |rows| [force(rows), force(rows), force(rows)];
-        self.mixes = self.rows.iter().map(mixes).collect();
-        self.works = [vec![0.0; self.links.len()], vec![0.0; self.links.len()]];
+        self.links.mixes = self.links.rows.iter().map(mixes).collect();
+        self.links.works = [
+            vec![0.0; self.links.named.len()],
+            vec![0.0; self.links.named.len()],
+        ];
     }
 
     /// Begins anew from other initial motions: displacement (m) and velocity (m/s) of each zone, one entry per unknown.
@@ -146,7 +156,11 @@ impl Zones {
             }
             driver.restart(u, v)?;
         }
-        let links = (&mut self.rows, &mut self.turning, self.norms.len());
+        let links = (
+            &mut self.links.rows,
+            &mut self.links.turning,
+            self.links.norms.len(),
+        );
         let multipliers = start(&mut self.drivers, links, &mut |driver, zone, begun| {
             driver.link(&begun.force);
             driver.restart(&motions[zone][0], begun.velocity)
@@ -177,7 +191,11 @@ impl Zones {
                 driver.begin_dynamics(&end.zones[zone], &velocity, pushed.clone())?;
             }
         }
-        let links = (&mut self.rows, &mut self.turning, self.norms.len());
+        let links = (
+            &mut self.links.rows,
+            &mut self.links.turning,
+            self.links.norms.len(),
+        );
         let multipliers = start(&mut self.drivers, links, &mut |driver, zone, begun| {
             let own = begun.force.iter().zip(&pushed[zone]);
             let force = own.map(|(own, pushed)| own + pushed).collect();
@@ -185,23 +203,23 @@ impl Zones {
         })?;
         let (step, time) = (end.whole.step, end.whole.time);
         self.begin_at((step, time), multipliers);
-        self.control = Control::after_stage(self.largest, step, time);
+        self.clock.control = Control::after_stage(self.clock.largest, step, time);
         Ok(())
     }
 
     /// Begins the steps from one at a time (s), with these multipliers.
     fn begin_at(&mut self, (step, time): (u64, f64), multipliers: Vec<f64>) {
-        if let Some(links) = &mut self.turning {
+        if let Some(links) = &mut self.links.turning {
             links.restart();
         }
-        (self.step, self.time) = (step, time);
-        self.control = Control::start(self.largest);
-        self.sizes = [self.largest; 2];
-        self.earlier = [multipliers.clone(), multipliers.clone()];
-        self.multipliers = [multipliers.clone(), multipliers];
+        (self.clock.step, self.clock.time) = (step, time);
+        self.clock.control = Control::start(self.clock.largest);
+        self.clock.sizes = [self.clock.largest; 2];
+        self.links.earlier = [multipliers.clone(), multipliers.clone()];
+        self.links.multipliers = [multipliers.clone(), multipliers];
         self.start_works();
         let origins: Vec<Origin> = self.drivers.iter().map(Origin::of).collect();
-        if origins != self.origins {
+        if origins != self.response.origins {
             self.start_from(origins);
         }
     }

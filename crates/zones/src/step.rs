@@ -10,14 +10,14 @@ use carom_system::on;
 impl Zones {
     /// Computes the outer step, which is not accepted.
     pub(crate) fn attempt(&mut self) -> Result<(), Error> {
-        let inner = self.substeps.iter().any(|m| *m > 1);
+        let inner = self.clock.substeps.iter().any(|m| *m > 1);
         if let Some(between) = &mut self.between {
-            let steps = (&self.substeps[..], self.dt);
-            between.begin(&self.drivers, (self.time, self.dt));
-            between.respond(&mut self.drivers, steps, &self.origins)?;
+            let steps = (&self.clock.substeps[..], self.clock.dt);
+            between.begin(&self.drivers, (self.clock.time, self.clock.dt));
+            between.respond(&mut self.drivers, steps, &self.response.origins)?;
         }
-        match self.kind {
-            LinkKind::GravouilCombescure if inner && !self.links.is_empty() => {
+        match self.links.kind {
+            LinkKind::GravouilCombescure if inner && !self.links.named.is_empty() => {
                 self.step_pointwise()
             }
             _ => self.step_ramped(),
@@ -29,9 +29,9 @@ impl Zones {
         let driver = &mut self.drivers[k];
         record(
             driver,
-            (&self.rows[k], self.turning.is_some()),
-            &mut self.mixes[k],
-            (&self.links, &mut self.works[0]),
+            (&self.links.rows[k], self.links.turning.is_some()),
+            &mut self.links.mixes[k],
+            (&self.links.named, &mut self.links.works[0]),
         );
         if let Some(between) = &mut self.between {
             between.record(k, driver);
@@ -43,27 +43,30 @@ impl Zones {
     /// Makes the attempt the state.
     pub(crate) fn accept(&mut self) {
         for k in 0..self.drivers.len() {
-            if self.substeps[k] == 1 {
+            if self.clock.substeps[k] == 1 {
                 self.take(k);
             }
-            let [_, last, before] = &mut self.mixes[k];
+            let [_, last, before] = &mut self.links.mixes[k];
             before.copy_from_slice(last);
         }
-        let [now, sum] = &mut self.works;
+        let [now, sum] = &mut self.links.works;
         sum.iter_mut().zip(now).for_each(|(sum, now)| *sum += *now);
-        self.time = self.control.instant(self.step, self.time, self.dt);
+        self.clock.time =
+            self.clock
+                .control
+                .instant(self.clock.step, self.clock.time, self.clock.dt);
         if let Some(between) = &mut self.between {
-            between.accept(&self.drivers, [self.time, self.dt]);
+            between.accept(&self.drivers, [self.clock.time, self.clock.dt]);
         }
-        if let Some(links) = &mut self.turning {
+        if let Some(links) = &mut self.links.turning {
             links.accept();
         }
-        self.step += 1;
-        self.sizes = [self.dt, self.sizes[0]];
-        self.all_passes += self.passes as u64;
-        self.products[0] += self.products[1];
-        let [before, first] = &mut self.earlier;
-        let [old, new] = &mut self.multipliers;
+        self.clock.step += 1;
+        self.clock.sizes = [self.clock.dt, self.clock.sizes[0]];
+        self.response.all_passes += self.response.passes as u64;
+        self.response.products[0] += self.response.products[1];
+        let [before, first] = &mut self.links.earlier;
+        let [old, new] = &mut self.links.multipliers;
         std::mem::swap(before, first);
         before.copy_from_slice(old);
         old.copy_from_slice(new);
@@ -73,11 +76,11 @@ impl Zones {
 
     /// Gives the zones back the states that inner steps have changed, and the forces of links before the outer step.
     pub(crate) fn go_back(&mut self) {
-        for [_, last, before] in &mut self.mixes {
+        for [_, last, before] in &mut self.links.mixes {
             last.copy_from_slice(before);
         }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
-            let changes = changes_state((&self.substeps, &self.between), k);
+            let changes = changes_state((&self.clock.substeps, &self.between), k);
             if changes && let Some(saved) = &self.saved[k] {
                 driver.go_back(saved);
             }
@@ -87,32 +90,34 @@ impl Zones {
     /// Multipliers linear over the outer step, rows that hold at its end.
     fn step_ramped(&mut self) -> Result<(), Error> {
         self.guess();
-        if let Some(links) = &mut self.turning {
-            links.begin(&self.drivers, self.dt, &mut self.rows);
+        if let Some(links) = &mut self.links.turning {
+            links.begin(&self.drivers, self.clock.dt, &mut self.links.rows);
         }
         for (k, driver) in self.drivers.iter_mut().enumerate() {
-            if !changes_state((&self.substeps, &self.between), k) {
+            if !changes_state((&self.clock.substeps, &self.between), k) {
                 driver.prepare()?;
             }
         }
-        self.moves.clear();
+        self.links.moves.clear();
         let mut joined = false;
         for pass in 1..=self.most_passes() {
-            self.passes = pass;
+            self.response.passes = pass;
             self.samples.clear();
-            self.defect.fill(0.0);
-            self.works[0].fill(0.0);
+            self.links.defect.fill(0.0);
+            self.links.works[0].fill(0.0);
             if let Some(between) = &mut self.between {
                 between.begin_pass();
             }
             for k in 0..self.drivers.len() {
-                let [_, last, before] = &mut self.mixes[k];
+                let [_, last, before] = &mut self.links.mixes[k];
                 last.copy_from_slice(before);
                 self.ramp_zone(k)?;
             }
             self.add_defects();
             let pressed = match &mut self.between {
-                Some(between) => between.corrected((self.step, self.dt), &self.drivers)?,
+                Some(between) => {
+                    between.corrected((self.clock.step, self.clock.dt), &self.drivers)?
+                }
                 None => true,
             };
             joined = self.corrected(1)?;
@@ -121,15 +126,17 @@ impl Zones {
             }
         }
         match (&self.between, joined) {
-            (Some(between), true) => Err(between.unsettled(self.step + 1, self.passes)),
+            (Some(between), true) => {
+                Err(between.unsettled(self.clock.step + 1, self.response.passes))
+            }
             _ => Err(self.parted()),
         }
     }
 
     /// Multipliers at the end of the step from those of the last three instants, by a parabola.
     fn guess(&mut self) {
-        let ([old, new], [before, first]) = (&mut self.multipliers, &self.earlier);
-        let (dt, [one, two]) = (self.dt, self.sizes);
+        let ([old, new], [before, first]) = (&mut self.links.multipliers, &self.links.earlier);
+        let (dt, [one, two]) = (self.clock.dt, self.clock.sizes);
         let equal = one == dt && two == dt;
         for (i, new) in new.iter_mut().enumerate() {
             *new = match equal {
@@ -145,11 +152,11 @@ impl Zones {
 
     /// Takes the steps of one zone with the multipliers as they stand.
     fn ramp_zone(&mut self, k: usize) -> Result<(), Error> {
-        let m = self.substeps[k];
-        let changes = changes_state((&self.substeps, &self.between), k);
+        let m = self.clock.substeps[k];
+        let changes = changes_state((&self.clock.substeps, &self.between), k);
         if changes
             && let Some(saved) = &self.saved[k]
-            && (self.drivers[k].state().step != saved.step || self.passes > 1)
+            && (self.drivers[k].state().step != saved.step || self.response.passes > 1)
         {
             self.drivers[k].go_back(saved);
         }
@@ -158,12 +165,12 @@ impl Zones {
                 self.size_inner(k, j + 1 == m);
             }
             let driver = &mut self.drivers[k];
-            let [old, new] = &self.multipliers;
+            let [old, new] = &self.links.multipliers;
             let [_, end] = driver.link_weights();
             let part = (f64::from(j) + end) / f64::from(m);
-            let (rows, force) = (&self.rows[k], &mut self.mixes[k][0]);
-            if let Some(links) = &self.turning {
-                links.forces((k, part), rows, &self.multipliers, force);
+            let (rows, force) = (&self.links.rows[k], &mut self.links.mixes[k][0]);
+            if let Some(links) = &self.links.turning {
+                links.forces((k, part), rows, &self.links.multipliers, force);
                 driver.set_link_terms(rows, force);
             } else {
                 for (i, mix) in force.iter_mut().enumerate() {
@@ -182,7 +189,7 @@ impl Zones {
             }
             driver.complete()?;
             if let Some(between) = &mut self.between {
-                between.candidates.look(k, driver, self.dt);
+                between.candidates.look(k, driver, self.clock.dt);
             }
             if m > 1 {
                 if j == 0 {
@@ -196,17 +203,17 @@ impl Zones {
 
     /// What the velocities at the end of the pass miss in the rows.
     fn add_defects(&mut self) {
-        if let Some(links) = &mut self.turning {
-            let ends = (&self.drivers[..], &self.substeps[..], self.dt);
-            links.end(ends, (&mut self.rows, &mut self.defect));
+        if let Some(links) = &mut self.links.turning {
+            let ends = (&self.drivers[..], &self.clock.substeps[..], self.clock.dt);
+            links.end(ends, (&mut self.links.rows, &mut self.links.defect));
         }
         for (k, driver) in self.drivers.iter().enumerate() {
-            let v = match self.substeps[k] {
+            let v = match self.clock.substeps[k] {
                 1 => &driver.ended().motion.v,
                 _ => &driver.state().motion.v,
             };
-            for (row, terms) in &self.rows[k] {
-                self.defect[*row as usize] += on(terms, v);
+            for (row, terms) in &self.links.rows[k] {
+                self.links.defect[*row as usize] += on(terms, v);
             }
         }
     }

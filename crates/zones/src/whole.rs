@@ -170,7 +170,7 @@ impl Whole {
         for (driver, own) in self.zones.drivers.iter_mut().zip(&costs.zones) {
             driver.add_earlier(own);
         }
-        self.zones.link_time += costs.phases.links;
+        self.zones.response.link_time += costs.phases.links;
     }
 
     /// The zones.
@@ -180,7 +180,7 @@ impl Whole {
 
     /// Takes every `every`-th outer step once more after dropping it, which must change no bit of the results: for tests.
     pub fn force_rejections(&mut self, every: u64) {
-        self.zones.forced = Some(every);
+        self.zones.clock.forced = Some(every);
     }
 
     /// Names of the zones.
@@ -197,9 +197,9 @@ impl Whole {
     /// State and report from those of the zones. Needs memory only where the number of parts of a step
     /// grows.
     fn gather(&mut self) {
-        self.state.step = self.zones.step;
+        self.state.step = self.zones.clock.step;
         self.state.time = self.zones.time();
-        self.state.control = self.zones.control;
+        self.state.control = self.zones.clock.control;
         self.gather_motion();
         self.gather_interface();
         self.gather_records();
@@ -325,7 +325,7 @@ impl Whole {
         report.step = self.state.step;
         report.time = self.state.time;
         report.balance = self.state.ledger.balance;
-        report.passes = self.zones.passes;
+        report.passes = self.zones.response.passes;
         if report.step == 0 {
             report.dt = 0.0;
             for (driver, contacts) in self.zones.drivers.iter().zip(&self.zones.contacts) {
@@ -336,14 +336,14 @@ impl Whole {
             self.tell_between();
             return;
         }
-        report.dt = self.zones.dt;
-        report.attempts = self.zones.attempts;
+        report.dt = self.zones.clock.dt;
+        report.attempts = self.zones.clock.attempts;
         self.place_samples();
         let report = &mut self.report;
         report.join_parts();
         for sample in self.zones.samples() {
             let zone = sample.zone;
-            if self.zones.substeps[zone] == 1 {
+            if self.zones.clock.substeps[zone] == 1 {
                 for (own, contact) in sample.contacts.iter().zip(&self.zones.contacts[zone]) {
                     report.contacts[*contact].clone_from(own);
                 }
@@ -370,13 +370,13 @@ impl Whole {
     /// The samples of the zones, contact by contact in the parts of the step, of which each step of a zone has a whole number; none where no zone
     /// has inner steps.
     fn place_samples(&mut self) {
-        let parts = common_multiple(&self.zones.substeps) as usize;
+        let parts = common_multiple(&self.zones.clock.substeps) as usize;
         let samples = &mut self.report.samples;
         if parts == 1 {
             samples.clear();
             return;
         }
-        let (dt, start) = (self.zones.dt, self.zones.time() - self.zones.dt);
+        let (dt, start) = (self.zones.clock.dt, self.zones.time() - self.zones.clock.dt);
         samples.resize_with(parts, || ContactSample {
             contacts: vec![ContactReport::default(); self.system.contacts.len()],
             ..ContactSample::default()
@@ -388,7 +388,7 @@ impl Whole {
         self.placed.fill(0);
         for sample in self.zones.samples() {
             let zone = sample.zone;
-            let of_step = parts / self.zones.substeps[zone] as usize;
+            let of_step = parts / self.zones.clock.substeps[zone] as usize;
             let first = self.placed[zone] * of_step;
             let range = first..first + of_step;
             self.placed[zone] += 1;
@@ -468,7 +468,7 @@ impl Stepper for Whole {
             (Some(stage), _) => stage.driver.costs(),
             (None, over) => over.clone(),
         };
-        costs.phases.links += self.zones.link_time;
+        costs.phases.links += self.zones.response.link_time;
         for driver in &self.zones.drivers {
             let own = driver.costs();
             costs.add(&own);

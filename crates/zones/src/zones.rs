@@ -70,26 +70,12 @@ pub struct ZonesState {
     pub products: u64,
 }
 
-/// The drivers of all zones, and the links between them.
-pub struct Zones {
-    pub(crate) drivers: Vec<Driver>,
+/// The outer steps: when and how large they are, and how many inner steps the zones take in them.
+pub(crate) struct OuterSteps {
     /// Inner steps of each zone to the outer step that is taken.
     pub(crate) substeps: Vec<u32>,
     /// The same where contacts may close, and where they cannot.
     pub(crate) choices: [Vec<u32>; 2],
-    /// Contacts of the model by zone.
-    pub(crate) contacts: Vec<Vec<usize>>,
-    /// By zone, number of the row and its terms there.
-    pub(crate) rows: ByZone,
-    /// Links among them that turn.
-    pub(crate) turning: Option<TurningLinks>,
-    /// Contacts between zones.
-    pub(crate) between: Option<CrossZoneContacts>,
-    /// Σ |c| of each row.
-    pub(crate) norms: Vec<f64>,
-    /// Range of the rows of each link.
-    pub(crate) links: Vec<(String, std::ops::Range<usize>)>,
-    pub(crate) kind: LinkKind,
     /// Rules of adaptive outer steps, the largest of them in s, and what their control remembers.
     pub(crate) rules: Option<Adaptive>,
     pub(crate) largest: f64,
@@ -106,10 +92,46 @@ pub struct Zones {
     pub(crate) step: u64,
     /// Time, s.
     pub(crate) time: f64,
+    /// Test hook: drops the first attempt of every n-th outer step.
+    pub(crate) forced: Option<u64>,
+}
+
+/// The rows of the links between zones, and their multipliers.
+pub(crate) struct ZoneLinks {
+    /// Range of the rows of each link.
+    pub(crate) named: Vec<(String, std::ops::Range<usize>)>,
+    pub(crate) kind: LinkKind,
+    /// By zone, number of the row and its terms there.
+    pub(crate) rows: ByZone,
+    /// Links among them that turn.
+    pub(crate) turning: Option<TurningLinks>,
+    /// Σ |c| of each row.
+    pub(crate) norms: Vec<f64>,
     /// L at the start and at the end of the step.
     pub(crate) multipliers: [Vec<f64>; 2],
     /// L one and two outer steps before the start of the step.
     pub(crate) earlier: [Vec<f64>; 2],
+    /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step; where links turn, the
+    /// forces of their terms.
+    pub(crate) mixes: Vec<[Vec<f64>; 3]>,
+    /// Work of each link on both its sides in the outer step, and before it, J.
+    pub(crate) works: [Vec<f64>; 2],
+    /// Of pointwise multipliers: what the free velocities of zones with one step leave in the rows at its start and end, and the multipliers of
+    /// an instant.
+    pub(crate) free: [Vec<f64>; 2],
+    pub(crate) pointwise: [Vec<f64>; 2],
+    /// What the velocities miss in the rows, m/s.
+    pub(crate) defect: Vec<f64>,
+    /// Largest defect of a row after the last pass, m/s.
+    pub(crate) worst: f64,
+    /// The row that has it.
+    pub(crate) worst_row: usize,
+    /// Moves of the multipliers in the passes so far.
+    pub(crate) moves: Moves,
+}
+
+/// How zones answer to the multipliers: the condensed problem H of a pass, and what passes cost.
+pub(crate) struct LinkResponse {
     /// H of the multipliers that a pass looks for.
     pub(crate) solver: Option<LinkSolver>,
     /// Where the zones were linearised for H, and whether H is to be made anew.
@@ -119,31 +141,29 @@ pub struct Zones {
     pub(crate) outer: OuterResponse,
     /// Both for other sizes and numbers of inner steps.
     pub(crate) kept: Vec<Kept>,
-    pub(crate) saved: Vec<Option<State>>,
-    pub(crate) samples: Vec<Sample>,
-    /// Passes of the last step, over all steps, and factorisations of H.
+    /// Passes of the last step, and over all steps.
     pub(crate) passes: usize,
     pub(crate) all_passes: u64,
     /// Products with H in all steps, and in the one under way.
     pub(crate) products: [u64; 2],
-    pub(crate) defect: Vec<f64>,
-    /// Largest defect of a row after the last pass, m/s.
-    pub(crate) worst: f64,
-    /// The row that has it.
-    pub(crate) worst_row: usize,
-    pub(crate) free: [Vec<f64>; 2],
-    pub(crate) pointwise: [Vec<f64>; 2],
-    /// Λ of each zone in the step that it takes, in its last one, and in its last one before the outer step; where links turn, the
-    /// forces of their terms.
-    pub(crate) mixes: Vec<[Vec<f64>; 3]>,
     /// Time spent on making and solving the problem of the multipliers.
     pub(crate) link_time: Duration,
-    /// Moves of the multipliers in the passes so far.
-    pub(crate) moves: Moves,
-    /// Work of each link on both its sides in the outer step, and before it, J.
-    pub(crate) works: [Vec<f64>; 2],
-    /// Every which outer step is dropped once, in tests.
-    pub(crate) forced: Option<u64>,
+}
+
+/// The drivers of all zones, and the links between them.
+pub struct Zones {
+    pub(crate) drivers: Vec<Driver>,
+    /// States at the start of the outer step of zones whose state it changes.
+    pub(crate) saved: Vec<Option<State>>,
+    /// Contacts of the model by zone.
+    pub(crate) contacts: Vec<Vec<usize>>,
+    /// Contacts between zones.
+    pub(crate) between: Option<CrossZoneContacts>,
+    pub(crate) clock: OuterSteps,
+    pub(crate) links: ZoneLinks,
+    pub(crate) response: LinkResponse,
+    /// What the contacts of the zones did at the instants of the outer step.
+    pub(crate) samples: Vec<Sample>,
 }
 
 impl Zones {
@@ -159,7 +179,7 @@ impl Zones {
 
     /// Multipliers of the rows at the last instant.
     pub fn multipliers(&self) -> &[f64] {
-        &self.multipliers[0]
+        &self.links.multipliers[0]
     }
 
     /// What the contacts of the zones did at the instants of the last outer step.
@@ -169,38 +189,41 @@ impl Zones {
 
     /// Outer steps taken.
     pub fn outer_step(&self) -> u64 {
-        self.step
+        self.clock.step
     }
 
     /// Time, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.clock.time
     }
 
     /// Passes of the last outer step.
     pub fn passes(&self) -> usize {
-        self.passes
+        self.response.passes
     }
 
     /// Passes over all outer steps.
     pub fn all_passes(&self) -> u64 {
-        self.all_passes
+        self.response.all_passes
     }
 
     /// Products with the condensed problem of the links in all outer steps, where it is solved by iterations.
     pub fn link_products(&self) -> u64 {
-        self.products[0]
+        self.response.products[0]
     }
 
     /// Bytes held for the condensed problem of the links.
     pub fn condensed_bytes(&self) -> usize {
-        let rows = self.norms.len();
-        self.solver.as_ref().map_or(0, |solver| solver.bytes(rows))
+        let rows = self.links.norms.len();
+        self.response
+            .solver
+            .as_ref()
+            .map_or(0, |solver| solver.bytes(rows))
     }
 
     /// Work of each link on both its sides since the start, J: what it makes (positive) or takes.
     pub fn link_works(&self) -> &[f64] {
-        &self.works[1]
+        &self.links.works[1]
     }
 
     /// The balance of all zones together.
@@ -212,20 +235,26 @@ impl Zones {
     /// The state of all zones.
     pub fn state(&self) -> ZonesState {
         ZonesState {
-            step: self.step,
-            time: self.time,
-            control: self.control,
-            sizes: self.sizes,
-            multipliers: self.multipliers[0].clone(),
-            earlier: self.earlier.clone(),
-            forces: self.mixes.iter().map(|[_, last, _]| last.clone()).collect(),
-            missed: (self.turning.as_ref()).map_or(Vec::new(), |links| links.missed().to_vec()),
-            link_works: self.works[1].clone(),
-            origins: self.origins.clone(),
+            step: self.clock.step,
+            time: self.clock.time,
+            control: self.clock.control,
+            sizes: self.clock.sizes,
+            multipliers: self.links.multipliers[0].clone(),
+            earlier: self.links.earlier.clone(),
+            forces: self
+                .links
+                .mixes
+                .iter()
+                .map(|[_, last, _]| last.clone())
+                .collect(),
+            missed: (self.links.turning.as_ref())
+                .map_or(Vec::new(), |links| links.missed().to_vec()),
+            link_works: self.links.works[1].clone(),
+            origins: self.response.origins.clone(),
             between: self.between.as_ref().map(|between| between.state.clone()),
             zones: self.drivers.iter().map(|d| d.state().clone()).collect(),
-            passes: self.all_passes,
-            products: self.products[0],
+            passes: self.response.all_passes,
+            products: self.response.products[0],
         }
     }
 
@@ -260,21 +289,22 @@ impl Zones {
 
     /// Goes on from a state, which must be of the same zones.
     pub fn resume(&mut self, state: &ZonesState) {
-        (self.step, self.time, self.all_passes) = (state.step, state.time, state.passes);
-        self.products[0] = state.products;
+        (self.clock.step, self.clock.time, self.response.all_passes) =
+            (state.step, state.time, state.passes);
+        self.response.products[0] = state.products;
         self.judge_solver();
-        (self.control, self.sizes) = (state.control, state.sizes);
-        self.multipliers[0].clone_from(&state.multipliers);
-        self.earlier.clone_from(&state.earlier);
-        for ([_, last, before], force) in self.mixes.iter_mut().zip(&state.forces) {
+        (self.clock.control, self.clock.sizes) = (state.control, state.sizes);
+        self.links.multipliers[0].clone_from(&state.multipliers);
+        self.links.earlier.clone_from(&state.earlier);
+        for ([_, last, before], force) in self.links.mixes.iter_mut().zip(&state.forces) {
             last.clone_from(force);
             before.clone_from(force);
         }
-        self.works[1].clone_from(&state.link_works);
-        if let Some(links) = &mut self.turning {
+        self.links.works[1].clone_from(&state.link_works);
+        if let Some(links) = &mut self.links.turning {
             links.resume(&state.missed);
         }
-        if state.origins != self.origins {
+        if state.origins != self.response.origins {
             self.start_from(state.origins.clone());
         }
         for (driver, state) in self.drivers.iter_mut().zip(&state.zones) {
@@ -287,7 +317,7 @@ impl Zones {
 
     /// Name of each link and the range of its rows among the multipliers.
     pub fn links(&self) -> &[(String, std::ops::Range<usize>)] {
-        &self.links
+        &self.links.named
     }
 
     /// Contacts between zones, and what they go on from; none where all contacts are inside zones.

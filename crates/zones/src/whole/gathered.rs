@@ -89,13 +89,18 @@ pub(super) fn assemblies_of_links(
     (places, system): (&[Places], &System),
 ) -> Vec<usize> {
     let of_link = |(_, rows): &(String, Range<usize>)| {
-        let terms = zones.rows.iter().zip(places).find_map(|(own, places)| {
-            let mut own = own
-                .iter()
-                .filter(|(row, _)| rows.contains(&(*row as usize)));
-            let (unknown, _) = own.find_map(|(_, terms)| terms.first())?;
-            Some((*unknown, places))
-        });
+        let terms = zones
+            .links
+            .rows
+            .iter()
+            .zip(places)
+            .find_map(|(own, places)| {
+                let mut own = own
+                    .iter()
+                    .filter(|(row, _)| rows.contains(&(*row as usize)));
+                let (unknown, _) = own.find_map(|(_, terms)| terms.first())?;
+                Some((*unknown, places))
+            });
         terms.map_or(0, |(unknown, places)| {
             assembly_of(unknown, (places, system))
         })
