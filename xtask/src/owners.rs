@@ -7,12 +7,24 @@ use std::path::Path;
 const PAGE: &str = "docs/src/developer/architecture.md";
 const DRIVER: &str = "crates/dynamics/src/driver";
 
+/// The folder of what all owners see.
+const SHARED: &str = "attempt";
+
 /// Owners and files of which picture, tables and program do not say the same.
 pub fn check(root: &Path) -> Vec<String> {
     let page = fs::read_to_string(root.join(PAGE)).unwrap_or_default();
     let read = |name: &str| fs::read_to_string(root.join(DRIVER).join(name)).unwrap_or_default();
     let fields = fields(&read("mod.rs"));
-    let structs = structs(&read("owners.rs"));
+    let Ok(entries) = fs::read_dir(root.join(DRIVER)) else {
+        return vec![format!("{DRIVER}: cannot be read")];
+    };
+    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let (files, folders): (BTreeSet<String>, BTreeSet<String>) =
+        names.partition(|name| name.ends_with(".rs"));
+    let structs: BTreeSet<String> = folders
+        .iter()
+        .flat_map(|folder| structs(&read(&format!("{folder}/mod.rs"))))
+        .collect();
     let owners: BTreeSet<String> = fields.intersection(&structs).cloned().collect();
     let mut problems = differ("the picture of owners", &drawn(&page, &structs), &owners);
     problems.extend(differ(
@@ -20,16 +32,23 @@ pub fn check(root: &Path) -> Vec<String> {
         &rows(&page, &structs),
         &owners,
     ));
-    let Ok(entries) = fs::read_dir(root.join(DRIVER)) else {
-        return vec![format!("{DRIVER}: cannot be read")];
-    };
-    let names = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let files: BTreeSet<String> = names.filter(|name| name.ends_with(".rs")).collect();
     problems.extend(differ(
         "the table of files of the driver",
         &listed(&page),
         &files,
     ));
+    problems.extend(differ(
+        "the table of owners, by folder,",
+        &told_folders(&page),
+        &folders,
+    ));
+    for folder in folders.iter().filter(|folder| *folder != SHARED) {
+        let module = read(&format!("{folder}/mod.rs"));
+        let open = owners.iter().flat_map(|owner| open_fields(&module, owner));
+        problems.extend(open.map(|line| {
+            format!("{DRIVER}/{folder}/mod.rs: fields of an owner are private: `{line}`")
+        }));
+    }
     problems
 }
 
@@ -41,6 +60,28 @@ fn differ(what: &str, told: &BTreeSet<String>, found: &BTreeSet<String>) -> Vec<
         .difference(found)
         .map(|name| format!("{PAGE}: {what} has `{name}`, which is not there"));
     missing.chain(more).collect()
+}
+
+/// Fields of a struct that others see.
+fn open_fields<'a>(module: &'a str, owner: &str) -> Vec<&'a str> {
+    let body = module.split(&format!("struct {owner} {{")).nth(1);
+    let lines = body.unwrap_or_default().lines();
+    let fields = lines.take_while(|line| !line.starts_with('}'));
+    fields
+        .map(str::trim)
+        .filter(|line| line.starts_with("pub"))
+        .collect()
+}
+
+/// Folders in the table of owners.
+fn told_folders(page: &str) -> BTreeSet<String> {
+    let rows = page.lines().filter(|line| line.starts_with("| `"));
+    let cells = rows.flat_map(|row| row.split('`').skip(1).step_by(2));
+    let folders = cells.filter_map(|cell| cell.strip_suffix('/'));
+    folders
+        .filter(|name| !name.contains('/'))
+        .map(str::to_owned)
+        .collect()
 }
 
 /// Types of the fields of the driver.
@@ -106,7 +147,7 @@ fn listed(page: &str) -> BTreeSet<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{drawn, fields, listed, rows, structs};
+    use super::{drawn, fields, listed, open_fields, rows, structs, told_folders};
 
     #[test]
     fn picture_tables_and_program_are_read_alike() {
@@ -125,5 +166,14 @@ mod tests {
             listed(page).into_iter().collect::<Vec<_>>(),
             ["a.rs", "b.rs"]
         );
+    }
+
+    #[test]
+    fn fields_that_others_see_and_folders_of_the_table_are_found() {
+        let module = "pub(crate) struct Links {\n    force: f64,\n    pub(crate) rows: f64,\n}\npub(crate) struct Other {\n    pub(crate) a: f64,\n}\n";
+        assert_eq!(open_fields(module, "Links"), ["pub(crate) rows: f64,"]);
+        let folders =
+            told_folders("| `Links` | `links/` | rows |\n| `a.rs` | `b/c/` |\ntext `d/`\n");
+        assert_eq!(folders.into_iter().collect::<Vec<_>>(), ["links"]);
     }
 }
