@@ -327,6 +327,11 @@ impl Interface {
             let relation = relation(i, status);
             -free(i, &relation) / scale(i, &relation) - self.product[i as usize]
         }));
+        self.solve_coupled(d)
+    }
+
+    /// Forces of the coupled candidates for the right-hand side at hand, and D P.
+    fn solve_coupled(&mut self, d: Compliance) -> Result<(), Failure> {
         match (d, &self.factor) {
             (Compliance::Lumped(d), _) => {
                 let own = &self.own[0];

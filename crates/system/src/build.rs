@@ -110,44 +110,11 @@ impl System {
             .collect();
         let (mut unknowns, initial_frames) =
             unknowns(&model, (&centres, &carried), &number, &mesh_node)?;
-        let body = |(body, centre): (&ModelBody, &Option<u32>)| {
-            let (spec, unknowns) = (body.spec.clone(), &unknowns);
-            if let (Some(reduced), Some(centre)) = (&body.reduced, centre) {
-                let node = (number[*centre as usize], unknowns);
-                let reduced = Reduced::new(Arc::clone(reduced), &number, node);
-                return Ok(Body::Reduced(reduced));
-            }
-            match (body.rigid, centre) {
-                (Some(rigid), Some(centre)) => {
-                    let node = (number[*centre as usize], unknowns);
-                    let rigid = Rigid::new(spec.name, spec.cells, rigid.inertia, node);
-                    Ok(Body::Rigid(rigid))
-                }
-                _ => Body::new(&model.mesh, spec, &number, unknowns),
-            }
-        };
-        let discrete = |some: &ModelDiscrete| {
-            Body::discrete(&model.mesh, some.spec.clone(), &number, &unknowns)
-        };
-        let bodies = model
-            .bodies
-            .iter()
-            .zip(&centres)
-            .map(body)
-            .chain(model.discrete.iter().map(discrete))
-            .collect::<Result<Vec<_>, _>>()?;
+        let bodies = bodies(&model, (&centres, &number), &unknowns)?;
         for body in bodies.iter().filter_map(Body::as_reduced) {
             unknowns.recover(body.basis(&number));
         }
-        let mut fixed = vec![false; unknowns.len()];
-        for support in &model.supports {
-            let numbers = support.nodes.iter().map(|&node| number[node as usize]);
-            for node in numbers.filter(|&node| node != u32::MAX) {
-                for unknown in unknowns.of(unknowns.moved_by(node)) {
-                    fixed[unknown] |= support.holds(unknowns.kind(unknown));
-                }
-            }
-        }
+        let mut fixed = held(&model, &number, &unknowns);
         hold_axisymmetric(&model, (&bodies, &unknowns), &mut fixed);
         let mut mass = Mass::of(&bodies, &model.bodies, &unknowns);
         let mut room = vec![0.0; unknowns.len()];
@@ -179,12 +146,6 @@ impl System {
             fixed[follows.unknown as usize] = true;
             initial_displacement[follows.unknown as usize] = 0.0;
         }
-        let mut contacts: Vec<Contact> = model
-            .contacts
-            .iter()
-            .map(|contact| numbered(contact, &model, &number, &x))
-            .collect();
-        let ways = model.contacts.iter().map(|contact| contact.initial);
         let places = Places {
             unknowns: &unknowns,
             time: 0.0,
@@ -195,7 +156,7 @@ impl System {
                 ..Frames::default()
             },
         };
-        settle(&mut contacts, ways, &places, (&mesh_node, slack(&model)))?;
+        let contacts = contacts(&model, (&number, &mesh_node), &places)?;
         let about = nearest_corner(&x);
         let origin = match model.contacts.is_empty() {
             true => about,
@@ -205,14 +166,7 @@ impl System {
             .into_iter()
             .map(|part| unknowns.of_range(part))
             .collect();
-        let part_of_body = bodies.iter().map(|body| {
-            let mut first = None;
-            body.each_element(&mut |nodes| {
-                first.get_or_insert(unknowns.first(nodes[0]));
-            });
-            part_of(&parts, first.unwrap_or(0))
-        });
-        let part_of_body: Vec<usize> = part_of_body.collect();
+        let part_of_body = parts_of_bodies((&bodies, &unknowns), &parts);
         let (schemes, zone_of_body, spans) = schemes(&model, &bodies, &part_of_body, &parts)?;
         let links = Links::of(&model, &number, (&unknowns, &x))?;
         let undeformed = undeformed(&bodies, &part_of_body, parts.len());
@@ -227,10 +181,8 @@ impl System {
             (&unknowns, &fixed),
             &of_parts,
         );
-        let axisymmetric = model
-            .bodies
-            .iter()
-            .any(|body| body.spec.kinematics == Kinematics::Axisymmetric);
+        let is_axisymmetric = |body: &ModelBody| body.spec.kinematics == Kinematics::Axisymmetric;
+        let axisymmetric = model.bodies.iter().any(is_axisymmetric);
         let arms = MomentArms::new(&unknowns, parts.iter().zip(&undeformed));
         let made = Made {
             model: &model,
@@ -294,6 +246,78 @@ impl System {
         system.assemblies = Assemblies::of(&system);
         Ok((system, model.bodies, model.contacts))
     }
+}
+
+/// The bodies of a model, then its discrete elements.
+fn bodies(
+    model: &Model,
+    (centres, number): (&[Option<u32>], &[u32]),
+    unknowns: &Unknowns,
+) -> Result<Vec<Body>, Error> {
+    let body = |(body, centre): (&ModelBody, &Option<u32>)| {
+        let spec = body.spec.clone();
+        let node = centre.map(|centre| (number[centre as usize], unknowns));
+        if let (Some(reduced), Some(node)) = (&body.reduced, node) {
+            let reduced = Reduced::new(Arc::clone(reduced), number, node);
+            return Ok(Body::Reduced(reduced));
+        }
+        match (body.rigid, node) {
+            (Some(rigid), Some(node)) => {
+                let rigid = Rigid::new(spec.name, spec.cells, rigid.inertia, node);
+                Ok(Body::Rigid(rigid))
+            }
+            _ => Body::new(&model.mesh, spec, number, unknowns),
+        }
+    };
+    let discrete =
+        |some: &ModelDiscrete| Body::discrete(&model.mesh, some.spec.clone(), number, unknowns);
+    let of_cells = model.bodies.iter().zip(centres).map(body);
+    let all = of_cells.chain(model.discrete.iter().map(discrete));
+    Ok(all.collect::<Result<Vec<_>, _>>()?)
+}
+
+/// Which unknowns supports hold.
+fn held(model: &Model, number: &[u32], unknowns: &Unknowns) -> Vec<bool> {
+    let mut fixed = vec![false; unknowns.len()];
+    for support in &model.supports {
+        let numbers = support.nodes.iter().map(|&node| number[node as usize]);
+        for node in numbers.filter(|&node| node != u32::MAX) {
+            for unknown in unknowns.of(unknowns.moved_by(node)) {
+                fixed[unknown] |= support.holds(unknowns.kind(unknown));
+            }
+        }
+    }
+    fixed
+}
+
+/// The contacts by number, where they are at the start.
+///
+/// # Errors
+/// A contact that is not as its case says.
+fn contacts(
+    model: &Model,
+    (number, mesh_node): (&[u32], &[u32]),
+    places: &Places,
+) -> Result<Vec<Contact>, Error> {
+    let own = model.contacts.iter();
+    let mut contacts: Vec<Contact> = own
+        .map(|contact| numbered(contact, model, number, places.x))
+        .collect();
+    let ways = model.contacts.iter().map(|contact| contact.initial);
+    settle(&mut contacts, ways, places, (mesh_node, slack(model)))?;
+    Ok(contacts)
+}
+
+/// The part of each body: of its first unknown.
+fn parts_of_bodies((bodies, unknowns): (&[Body], &Unknowns), parts: &[Range<usize>]) -> Vec<usize> {
+    let part = |body: &Body| {
+        let mut first = None;
+        body.each_element(&mut |nodes| {
+            first.get_or_insert(unknowns.first(nodes[0]));
+        });
+        part_of(parts, first.unwrap_or(0))
+    };
+    bodies.iter().map(part).collect()
 }
 
 /// The nodes of a system.
