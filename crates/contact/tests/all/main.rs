@@ -5,6 +5,7 @@
 
 mod again;
 mod carried;
+mod certificate;
 mod derivatives;
 mod fixture;
 mod mortar;
