@@ -1,10 +1,10 @@
-// Bundles the page's program and style into crates/output/assets, from which the Rust build includes them as text.
+// Bundles the page's program and style into crates/pages/assets, from which the Rust build includes them as text.
 //
 //   npm ci && npm run build
 import { readFile, writeFile } from "node:fs/promises";
 import { build } from "esbuild";
 
-const out = "../crates/output/assets/";
+const out = "../crates/pages/assets/";
 const result = await build({
   entryPoints: { report: "src/main.js" },
   bundle: true,

@@ -8,7 +8,7 @@ use carom_case::{
     SweepError,
 };
 use carom_dynamics::Observer;
-use carom_output::compare::Variant;
+use carom_studies::compare::Variant;
 use pyo3::prelude::*;
 
 use crate::errors::{failed, refused};

@@ -1,5 +1,5 @@
 // The data of the page: a JSON head, and one block of compressed arrays that it refers to. The layout is documented in
-// crates/output/src/page/schema.rs.
+// crates/pages/src/page/schema.rs.
 
 export const SCHEMA = 4;
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use carom_output::compare::{Comparison, Refined, Standard};
+use carom_studies::compare::{Comparison, Refined, Standard};
 
 use crate::error::Problem;
 use crate::input::{Input, Source};

@@ -8,8 +8,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use carom_output::Folder;
-use carom_output::compare::{Outcome, StepForce};
-use carom_output::study::{Abscissa, Fitted, Found, Goal, Quantity, Run, Study};
+use carom_studies::compare::{Outcome, StepForce};
+use carom_studies::study::{Abscissa, Fitted, Found, Goal, Quantity, Run, Study};
 
 use crate::error::Problem;
 use crate::input::{Input, Source};

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use carom_output::modes::ModeSet;
 use carom_output::{Folder, table::Table};
 use carom_reduction::Modes;
+use carom_studies::modes::ModeSet;
 
 use crate::lower::Built;
 

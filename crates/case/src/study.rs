@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use carom_output::Reference;
-use carom_output::study::{Abscissa, Run, Study};
+use carom_studies::study::{Abscissa, Run, Study};
 
 use crate::error::{Place, Problem};
 use crate::input::{Input, Source};

@@ -9,8 +9,8 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use carom_dynamics::{Interrupt, Observer, Stepper};
-use carom_output::compare::{Done, Outcome, Recorder, Variant};
 use carom_output::{Folder, Reference};
+use carom_studies::compare::{Done, Outcome, Recorder, Variant};
 use thiserror::Error as ThisError;
 
 use crate::error::Problem;

@@ -2,7 +2,7 @@
 //! is not the one that was meant shows here.
 
 use carom_dynamics::System;
-use carom_output::plot::{digits, quantity};
+use carom_pages::plot::{digits, quantity};
 
 use crate::facts::{Approach, Fact, courant_number, fact, facts_with};
 use crate::lower::Built;

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use carom_case::{Built, Estimate, Fact, Offenders, Problem};
 use carom_output::atomic;
-use carom_output::plot::quantity;
+use carom_pages::plot::quantity;
 
 use crate::exit::{BAD_INPUT, FAILED};
 use crate::load::{Build, keep_offenders, load_with};
@@ -120,7 +120,9 @@ fn draw(built: &Built, path: &Path) -> Result<(), u8> {
         err!("error: a model of points and springs alone has no picture");
         return Err(BAD_INPUT);
     };
-    let written = picture.and_then(|svg| atomic::write_text(path, &svg));
+    let written = picture
+        .map_err(carom_output::Error::from)
+        .and_then(|svg| atomic::write_text(path, &svg));
     written.map_err(|error| {
         err!("error: {error}");
         FAILED

@@ -1,8 +1,8 @@
 //! What contacts and levels did, on the terminal.
 
-use carom_output::plot::quantity;
 use carom_output::summary::Contact;
 use carom_output::{Level, Margin};
+use carom_pages::plot::quantity;
 
 use crate::terminal::out;
 

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use carom_output::plot::quantity;
+use carom_pages::plot::quantity;
 
 use crate::resume::open;
 use crate::run::end;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use carom_case::{NotResumed, Resume};
 use carom_output::Error;
-use carom_output::plot::quantity;
+use carom_pages::plot::quantity;
 use carom_ranks::Ranks;
 
 use crate::exit::{BAD_INPUT, FAILED};

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use carom_case::Finished;
 use carom_dynamics::RankShare;
 
-use carom_output::plot::quantity;
 use carom_output::summary::{Contact, Newton};
 use carom_output::{Grade, Summary};
+use carom_pages::plot::quantity;
 use carom_ranks::Ranks;
 
 use crate::contacts::{print_contact, print_level, print_margin};

@@ -1,7 +1,7 @@
 //! `carom study`.
 
 use carom_case::{Axis, Fit, Input, SweepError};
-use carom_output::study::RAW_PEAK;
+use carom_studies::study::RAW_PEAK;
 
 use crate::exit::FAILED;
 use crate::load::refuse;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use carom_case::{Sweep, SweepError};
 use carom_dynamics::Observer;
 use carom_output::Absent;
-use carom_output::compare::{Outcome, Variant};
+use carom_studies::compare::{Outcome, Variant};
 
 use crate::exit::{FAILED, INTERRUPTED};
 use crate::load;

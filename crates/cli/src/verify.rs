@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_dynamics::System;
-use carom_output::plot::{Axis, Curve, Figure, Panel, Role};
+use carom_pages::plot::{Axis, Curve, Figure, Panel, Role};
 use carom_verification::{Compared, Shown, Size};
 
 use crate::cases::CHECKS;

@@ -15,7 +15,7 @@ pub struct Absent {
 
 impl Absent {
     /// The cells of runs, of which `count` were computed: column, run and reason. Those of one column and reason are taken together.
-    pub(crate) fn gather<'a>(
+    pub fn gather<'a>(
         cells: impl Iterator<Item = (&'a str, &'a str, String)>,
         count: usize,
     ) -> Vec<Absent> {

@@ -9,25 +9,18 @@
 mod absent;
 pub mod atomic;
 pub mod checkpoint;
-pub mod compare;
 pub mod expectations;
 pub mod folder;
-pub mod form;
 #[cfg(feature = "hdf5")]
 mod hdf5;
 pub mod history;
-mod html;
 pub mod impacts;
 pub mod maxima;
-pub mod modes;
-pub mod page;
-pub mod plot;
 pub mod pvd;
 pub mod report;
 pub mod results;
 pub mod rows;
 pub mod statistics;
-pub mod study;
 pub mod summary;
 pub mod table;
 pub mod verdict;

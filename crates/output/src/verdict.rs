@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::form::Form;
+use carom_pages::form::Form;
 
 /// Part of a bound that rounding may leave of a number that is as large.
 const ROUNDING: f64 = 1e-8;

@@ -5,6 +5,7 @@
 //! blocks, length of a block before compression, length of the last block if it is shorter (else 0), compressed
 //! length of each block, then the compressed blocks. Source: VTK file formats, XML, "appended", "compressor".
 
+use carom_pages::escape;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
@@ -321,12 +322,4 @@ fn float_bytes(values: &[f64]) -> Vec<u8> {
         .iter()
         .flat_map(|value| value.to_le_bytes())
         .collect()
-}
-
-/// Text as the value of an XML attribute.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
 }

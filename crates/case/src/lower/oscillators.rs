@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use carom_bodies::{DiscreteKind, Tightened};
 use carom_dynamics::System;
-use carom_output::plot::quantity;
+use carom_pages::plot::quantity;
 
 use super::context::Context;
 use super::problems::Problems;

@@ -4,7 +4,7 @@ use carom_algebra::rotation::Rotation;
 use carom_bodies::{BodySpec, Inertia, Kinematics};
 use carom_dynamics::ModelRigid;
 use carom_mesh::Mesh;
-use carom_output::plot::quantity;
+use carom_pages::plot::quantity;
 use carom_quantities::MomentOfInertia;
 
 use super::oscillators;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use carom_dynamics::Amplitude;
-use carom_output::plot::{digits, quantity};
+use carom_pages::plot::{digits, quantity};
 use carom_signals::{Error, Record, Synthetic, corrected};
 
 use super::columns::{self, FileColumn};

@@ -6,8 +6,8 @@ use std::path::Path;
 use carom_case::{Axis, Choices, Fit, Input, Sweep, SweepError, compare, fit, study};
 use carom_dynamics::Silent;
 use carom_output::Summary;
-use carom_output::compare::{COLUMNS, Comparison, Outcome, Standard};
-use carom_output::study::{Quantity, Source, Study};
+use carom_studies::compare::{COLUMNS, Comparison, Outcome, Standard};
+use carom_studies::study::{Quantity, Source, Study};
 
 /// Two equal bars of `n` elements each, theta 1/2, Courant number 1/2.
 fn two_bars(n: usize, reference: &str) -> Input {
@@ -511,7 +511,7 @@ fn a_grid_has_a_row_for_each_combination_and_orders_for_each_value_of_the_second
         let series = format!("theta {value}");
         let orders = study.orders();
         let orders = orders.iter().filter(|order| order.series == series);
-        let points = |orders: &mut dyn Iterator<Item = &carom_output::study::Order>| {
+        let points = |orders: &mut dyn Iterator<Item = &carom_studies::study::Order>| {
             orders.map(|order| order.points.clone()).collect::<Vec<_>>()
         };
         assert_eq!(

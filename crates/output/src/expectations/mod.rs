@@ -13,8 +13,8 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::Error;
-use crate::form::Form;
 use crate::verdict::{Bounds, Line};
+use carom_pages::form::Form;
 
 pub use row::{Expectation, Expectations, Expected, Judged, Kind, MISSED, Range, Take, Told};
 

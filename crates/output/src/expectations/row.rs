@@ -5,8 +5,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::form::percent;
-use crate::plot::{quantity, rounded};
+use carom_pages::form::percent;
+use carom_pages::plot::{quantity, rounded};
 
 /// Part of a bound that rounding may exceed it by.
 const ROUNDING: f64 = 1e-12;

@@ -2,8 +2,9 @@
 //!
 //! This file has the frame of the page and what stands on top: summary, verdict, model and histories, with the figures inline (so that
 //! they follow the light or dark theme of the reader), and the text of the case; the others its tables. What the program of the page
-//! shows is in [`crate::page`].
+//! shows is in [`carom_pages::page`].
 
+pub(crate) mod anchors;
 mod balances;
 mod contacts;
 mod levels;
@@ -12,13 +13,14 @@ mod work;
 
 use std::path::Path;
 
-use crate::html::{code, each, messages, text, when};
-use crate::page::anchors::section;
-use crate::page::{Data, STYLE};
+use crate::report::anchors::section;
 use crate::results::{BodyQuality, Tile};
 use crate::summary::Summary;
 use crate::verdict::{Grade, Verdict};
-use crate::{Error, ImpactRow, atomic, html};
+use crate::{Error, ImpactRow, atomic};
+use carom_pages::html;
+use carom_pages::html::{code, each, messages, text, when};
+use carom_pages::page::{Data, STYLE};
 
 /// What the page shows.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +29,7 @@ pub struct Report<'a> {
     pub summary: &'a Summary,
     /// The impacts, in their order; or the first of them, if the summary counts more.
     pub impacts: &'a [ImpactRow],
-    /// Figures as SVG documents ([`crate::plot::Figure::svg`]).
+    /// Figures as SVG documents ([`carom_pages::plot::Figure::svg`]).
     pub figures: &'a [String],
     /// The text of the case file.
     pub case: &'a str,

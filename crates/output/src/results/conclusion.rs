@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use carom_dynamics::{ContactRecord, Ledger, System};
 
-use crate::plot::{Logarithmic, model_figure, unless_empty};
 use crate::results::columns::files;
 use crate::results::costs::{counts, courant, newton, timings};
 use crate::results::exact;
@@ -20,6 +19,7 @@ use crate::summary::{
     Angular, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Zones, hash,
 };
 use crate::{Error, Report, atomic, checkpoint};
+use carom_pages::plot::{Logarithmic, model_figure, unless_empty};
 
 impl Results {
     /// Writes figures, report and summary, after the run has told its end to the observers
@@ -128,7 +128,7 @@ fn draw(results: &mut Results, errors: &mut Vec<Error>) -> (Vec<String>, Option<
     let drawn = drawn.chain(instants).chain(drawn_spectra);
     let mut figures = Vec::new();
     for (name, figure) in drawn {
-        let Some(svg) = keep(unless_empty(figure), errors).flatten() else {
+        let Some(svg) = keep(unless_empty(figure).map_err(Error::from), errors).flatten() else {
             continue;
         };
         let path = results.folder.file(name);

@@ -9,7 +9,7 @@ use crate::results::sensor::{ContactPoint, Sensor};
 
 /// Sums of squares of an error and of what it is relative to.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Norms {
+pub struct Norms {
     error: f64,
     size: f64,
 }
@@ -21,26 +21,26 @@ impl Norms {
     }
 
     /// Relative L² error; `None` if there is nothing to be relative to.
-    pub(crate) fn relative(&self) -> Option<f64> {
+    pub fn relative(&self) -> Option<f64> {
         (self.size > 0.0).then(|| (self.error / self.size).sqrt())
     }
 }
 
 /// The comparison, growing with the run.
 #[derive(Debug)]
-pub(crate) struct Comparison {
+pub struct Comparison {
     pub(crate) reference: Reference,
     pub(crate) errors: Errors,
 }
 
 /// What the comparison has gathered.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(crate) struct Errors {
+pub struct Errors {
     /// Force of each step, or part of one, against the mean of the exact force over it, over those that meet the exact
     /// contact.
-    pub(crate) force: Norms,
+    pub force: Norms,
     /// Displacement of the contact points at the end of each step, counted from the start.
-    pub(crate) displacement: Norms,
+    pub displacement: Norms,
     start: Vec<f64>,
 }
 
@@ -92,7 +92,7 @@ fn compare(norms: &mut Norms, solution: &Solution, [from, to]: [f64; 2], force: 
 }
 
 /// Displacement of the contact end of a bar since the start, along the axis from the secondary to the primary side, m.
-pub(crate) fn displacement(solution: &Solution, body: usize, t: f64) -> f64 {
+pub fn displacement(solution: &Solution, body: usize, t: f64) -> f64 {
     let motion = &solution.motions()[body];
     sign(body) * (motion.displacement(0.0, t) - motion.displacement(0.0, 0.0))
 }
@@ -103,14 +103,14 @@ fn sign(body: usize) -> f64 {
 }
 
 /// Speed at which the mean motions of the bars part, m/s: each is positive away from the contact.
-pub(crate) fn opening_speed(solution: &Solution, t: f64) -> f64 {
+pub fn opening_speed(solution: &Solution, t: f64) -> f64 {
     let motions = solution.motions().iter();
     motions.map(|m| m.momentum(t) / m.bar().mass()).sum()
 }
 
 /// Whether the bars have parted by a time, and nothing but the contact has changed their momenta: neither a clamp nor
 /// gravity.
-pub(crate) fn parts_freely(solution: &Solution, t: f64) -> bool {
+pub fn parts_freely(solution: &Solution, t: f64) -> bool {
     let free =
         |motion: &Motion| motion.bar().far_end == FarEnd::Free && motion.bar().acceleration == 0.0;
     let parted = |contact: &carom_exact::Contact| contact.end < t;
@@ -118,7 +118,7 @@ pub(crate) fn parts_freely(solution: &Solution, t: f64) -> bool {
 }
 
 /// Largest exact force up to a time, N.
-pub(crate) fn peak_force(solution: &Solution, t: f64) -> f64 {
+pub fn peak_force(solution: &Solution, t: f64) -> f64 {
     let contacts = solution.contacts().iter();
     contacts
         .filter(|contact| contact.start < t)
@@ -126,11 +126,11 @@ pub(crate) fn peak_force(solution: &Solution, t: f64) -> f64 {
 }
 
 /// An exact curve: abscissae and ordinates, jumps as two samples at one instant.
-pub(crate) type Polyline = (Vec<f64>, Vec<f64>);
+pub type Polyline = (Vec<f64>, Vec<f64>);
 
 /// Displacement, velocity and acceleration of the contact end of a bar up to a time, along the axis. The acceleration
 /// is that between the jumps of the velocity, where it is infinite.
-pub(crate) fn motion_curves(solution: &Solution, body: usize, end: f64) -> [Polyline; 3] {
+pub fn motion_curves(solution: &Solution, body: usize, end: f64) -> [Polyline; 3] {
     let motion = &solution.motions()[body];
     let mut curves: [Polyline; 3] = Default::default();
     for pair in instants(motion, end.min(solution.end_time())).windows(2) {
@@ -152,7 +152,7 @@ pub(crate) fn motion_curves(solution: &Solution, body: usize, end: f64) -> [Poly
 }
 
 /// The exact force up to a time.
-pub(crate) fn force_curve(solution: &Solution, end: f64) -> Polyline {
+pub fn force_curve(solution: &Solution, end: f64) -> Polyline {
     let mut curve = Polyline::default();
     for (time, force) in solution.force().polyline() {
         if time >= end {

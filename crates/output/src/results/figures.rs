@@ -3,15 +3,14 @@
 use carom_dynamics::{Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
-use crate::Error;
-use crate::plot::{
-    Axis, ContactCurves, Curve, EnergyCurves, Figure, PSEUDO_TIME, Role, contact_figure,
-    energy_figure,
-};
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
 use crate::results::trace::Trace;
 use crate::results::{Reference, Settings};
+use carom_pages::plot::{
+    Axis, ContactCurves, Curve, EnergyCurves, Figure, PSEUDO_TIME, Role, contact_figure,
+    energy_figure,
+};
 
 /// Histories for the figures, in bounded memory.
 #[derive(Debug)]
@@ -167,7 +166,7 @@ impl Curves {
         &self,
         reference: Option<&Reference>,
         (end, is_static): (f64, bool),
-    ) -> Vec<(&'static str, Result<String, Error>)> {
+    ) -> Vec<(&'static str, Result<String, carom_pages::Error>)> {
         let mut figures = Vec::new();
         let abscissa = is_static.then_some(PSEUDO_TIME);
         if self.traces.total.is_empty() {
@@ -189,7 +188,7 @@ impl Curves {
         reference: Option<&Reference>,
         end: f64,
         abscissa: Option<Axis>,
-    ) -> Result<String, Error> {
+    ) -> Result<String, carom_pages::Error> {
         let exact: Vec<[Polyline; 3]> = reference.map_or(Vec::new(), |reference| {
             let bodies = 0..reference.solution.motions().len().min(self.sensors.len());
             bodies
@@ -228,7 +227,7 @@ impl Curves {
         along(contact_figure(&self.title, curves), abscissa).svg()
     }
 
-    fn energy_svg(&self, abscissa: Option<Axis>) -> Result<String, Error> {
+    fn energy_svg(&self, abscissa: Option<Axis>) -> Result<String, carom_pages::Error> {
         let columns = [
             &self.traces.kinetic,
             &self.traces.strain,

@@ -2,17 +2,16 @@
 
 use carom_dynamics::System;
 
-use crate::Error;
-use crate::plot::{Frame, Scene, film_figure, quantity};
 use crate::results::outlines::{Outlines, gap, size};
 use crate::results::stills::{FILM, Still, Stills};
+use carom_pages::plot::{Frame, Scene, film_figure, quantity};
 
 /// Displacement, relative to the size of the model, below which the pictures of a linear run would all look the same.
 const VISIBLE: f64 = 0.01;
 
 /// The film strip; none in one dimension, none of points and springs alone, and none of a linear run in which nothing is seen to
 /// move.
-pub(crate) fn film(system: &System, stills: &Stills) -> Option<Result<String, Error>> {
+pub(crate) fn film(system: &System, stills: &Stills) -> Option<Result<String, carom_pages::Error>> {
     let all = &stills.kept.equal;
     let moved = |still: &Still| {
         still

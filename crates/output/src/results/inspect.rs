@@ -2,11 +2,10 @@
 
 use carom_dynamics::System;
 
-use crate::Error;
-use crate::plot::{Axis, Curve, Figure, Frame, Panel, Role, Scene, film_figure};
 use crate::results::outlines::{Outlines, gap};
 use crate::results::page::quality::qualities;
 use crate::results::signs::signs;
+use carom_pages::plot::{Axis, Curve, Figure, Frame, Panel, Role, Scene, film_figure};
 
 /// Height of the tick at a node, over the distance of two bodies under each other.
 const TICK: f64 = 0.4;
@@ -17,7 +16,7 @@ const TICK: f64 = 0.4;
 ///
 /// # Errors
 /// [`Error::Drawing`].
-pub fn model_picture(system: &System) -> Option<Result<String, Error>> {
+pub fn model_picture(system: &System) -> Option<Result<String, carom_pages::Error>> {
     if system.dim < 2 {
         return lines(system);
     }
@@ -44,7 +43,7 @@ pub fn model_picture(system: &System) -> Option<Result<String, Error>> {
 }
 
 /// The bodies of a model in one dimension under each other, the first one on top.
-fn lines(system: &System) -> Option<Result<String, Error>> {
+fn lines(system: &System) -> Option<Result<String, carom_pages::Error>> {
     let bodies = system.bodies.iter().enumerate().map(|(number, body)| {
         let mut nodes = Vec::new();
         body.each_element(&mut |element| {

@@ -6,11 +6,10 @@ use carom_contact::Point;
 use carom_dynamics::{Order, State, StepReport, System};
 use serde::{Deserialize, Serialize};
 
-use crate::Error;
-use crate::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
 use crate::results::outlines::{Outlines, gap, size};
 use crate::results::settings::LevelSettings;
 use crate::results::stills::GROWTH;
+use carom_pages::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
 
 /// Most instants that are drawn.
 const DRAWN: usize = 3;
@@ -160,7 +159,7 @@ impl Instants {
 
     /// The pictures of the largest forces, the largest first; none where nothing touched or nothing has a shape. A structure of lines is
     /// drawn along two axes, solids in perspective beside beams.
-    pub(crate) fn draw(&self, system: &System) -> Option<Result<String, Error>> {
+    pub(crate) fn draw(&self, system: &System) -> Option<Result<String, carom_pages::Error>> {
         let mut shown: Vec<&Instant> = self.instants.iter().filter(|i| i.force > 0.0).collect();
         shown.sort_by(|a, b| b.force.total_cmp(&a.force));
         shown.truncate(DRAWN);
@@ -186,7 +185,11 @@ impl Instants {
         }
     }
 
-    fn draw_solids(&self, system: &System, shown: &[&Instant]) -> Result<String, Error> {
+    fn draw_solids(
+        &self,
+        system: &System,
+        shown: &[&Instant],
+    ) -> Result<String, carom_pages::Error> {
         let outlines = Outlines::new(system, |_, _| true);
         let norm = |u: &[f64; 3]| u.iter().map(|u| u * u).sum::<f64>().sqrt();
         let moved = shown.iter().flat_map(|instant| &instant.moved);

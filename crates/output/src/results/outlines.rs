@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use carom_contact::Target;
 use carom_dynamics::System;
 
-use crate::plot::{Frame, Patch};
+use carom_pages::plot::{Frame, Patch};
 
 /// Longest side of the box around the undeformed model, m.
-pub(crate) fn size(system: &System) -> f64 {
+pub fn size(system: &System) -> f64 {
     let side = |i: usize| {
         let values = system.x.iter().map(|x| x[i]);
         let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
@@ -20,7 +20,7 @@ pub(crate) fn size(system: &System) -> f64 {
 }
 
 /// Gap of a place over the rigid obstacles of a plane model at a time in s, m: negative inside.
-pub(crate) fn gap(system: &System, time: f64, place: [f64; 3]) -> f64 {
+pub fn gap(system: &System, time: f64, place: [f64; 3]) -> f64 {
     let place = match system.axisymmetric {
         true => [place[0].abs(), place[1], place[2]],
         false => place,
@@ -34,7 +34,7 @@ pub(crate) fn gap(system: &System, time: f64, place: [f64; 3]) -> f64 {
 }
 
 /// What is drawn of the mesh, in system numbers of the nodes.
-pub(crate) struct Outlines {
+pub struct Outlines {
     /// Nodes in turn around each patch, and its cell.
     patches: Vec<(Vec<u32>, usize)>,
     /// Outer edges of plane bodies, and cells that are lines.
@@ -44,7 +44,7 @@ pub(crate) struct Outlines {
 impl Outlines {
     /// All cells and the outer edges of plane bodies, the cells of shells, the outer faces of solids, the axes of bars and beams, of what is `shown`: asked
     /// with the number of the body and that of the cell among the cells of all bodies.
-    pub(crate) fn new(system: &System, shown: impl Fn(usize, usize) -> bool) -> Outlines {
+    pub fn new(system: &System, shown: impl Fn(usize, usize) -> bool) -> Outlines {
         let mut outlines = Outlines {
             patches: Vec::new(),
             rims: Vec::new(),
@@ -111,12 +111,12 @@ impl Outlines {
     }
 
     /// Whether there is nothing to draw at all.
-    pub(crate) fn is_blank(&self) -> bool {
+    pub fn is_blank(&self) -> bool {
         self.patches.is_empty() && self.rims.is_empty()
     }
 
     /// The nodes that are drawn, ascending.
-    pub(crate) fn nodes(&self) -> Vec<u32> {
+    pub fn nodes(&self) -> Vec<u32> {
         let patches = self.patches.iter().flat_map(|(nodes, _)| nodes);
         let mut nodes: Vec<u32> = patches.chain(self.rims.iter().flatten()).copied().collect();
         nodes.sort_unstable();
@@ -125,18 +125,18 @@ impl Outlines {
     }
 
     /// Nodes in turn around each cell or face with an area, and its cell among those of all bodies.
-    pub(crate) fn patches(&self) -> impl Iterator<Item = (&[u32], usize)> {
+    pub fn patches(&self) -> impl Iterator<Item = (&[u32], usize)> {
         self.patches.iter().map(|(nodes, cell)| (&nodes[..], *cell))
     }
 
     /// Whether there are cells or faces with an area.
-    pub(crate) fn has_patches(&self) -> bool {
+    pub fn has_patches(&self) -> bool {
         !self.patches.is_empty()
     }
 
     /// Adds what is at the places of the nodes (m) to a frame; of an axisymmetric model both halves of the section. `value`: of the nodes
     /// around a patch, and its cell.
-    pub(crate) fn frame(
+    pub fn frame(
         &self,
         system: &System,
         place: &dyn Fn(&u32) -> [f64; 3],
@@ -182,7 +182,7 @@ fn mirror(frame: &mut Frame) {
 }
 
 /// An edge from end to end: its middle, which comes last in the list of its nodes, between the ends.
-pub(crate) fn along(edge: &[u32]) -> Vec<u32> {
+pub fn along(edge: &[u32]) -> Vec<u32> {
     match edge {
         [from, to, middle] => vec![*from, *middle, *to],
         _ => edge.to_vec(),
@@ -190,7 +190,7 @@ pub(crate) fn along(edge: &[u32]) -> Vec<u32> {
 }
 
 /// The nodes around a cell or a face, with those in the middle of its edges.
-pub(crate) fn ring<'a>(edges: impl Iterator<Item = &'a [usize]>, nodes: &[u32]) -> Vec<u32> {
+pub fn ring<'a>(edges: impl Iterator<Item = &'a [usize]>, nodes: &[u32]) -> Vec<u32> {
     let mut ring = Vec::new();
     for edge in edges {
         // the end of an edge is the beginning of the next

@@ -7,11 +7,11 @@ use crate::Error;
 use crate::results::{Probe, Reference};
 
 /// Names of the components.
-pub(crate) const COMPONENTS: [&str; 3] = ["x", "y", "z"];
+pub const COMPONENTS: [&str; 3] = ["x", "y", "z"];
 
 /// Σ c · q over nodes of their displacements, velocities or accelerations q.
 #[derive(Clone, Debug)]
-pub(crate) struct Sensor {
+pub struct Sensor {
     terms: Vec<(u32, [f64; 3])>,
 }
 
@@ -24,12 +24,12 @@ impl Sensor {
     }
 
     /// Its nodes.
-    pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
+    pub fn nodes(&self) -> impl Iterator<Item = u32> + '_ {
         self.terms.iter().map(|(node, _)| *node)
     }
 
     /// The value in a motion.
-    pub(crate) fn of(&self, system: &System, motion: &Motion, order: Order) -> f64 {
+    pub fn of(&self, system: &System, motion: &Motion, order: Order) -> f64 {
         let products = self.terms.iter().map(|(node, c)| {
             let q = system.of_node(*node, motion, order);
             c[0] * q[0] + c[1] * q[1] + c[2] * q[2]
@@ -42,7 +42,7 @@ impl Sensor {
 ///
 /// # Errors
 /// [`Error::Probe`] if none of its nodes belongs to a body.
-pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Error> {
+pub fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Error> {
     let numbers = probe.nodes.iter();
     let numbers = numbers.map(|&(node, weight)| (system.number[node as usize], weight));
     let nodes: Vec<(u32, f64)> = numbers.filter(|(node, _)| *node != u32::MAX).collect();
@@ -67,20 +67,20 @@ pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Er
 
 /// The contact point whose motion is drawn.
 #[derive(Clone, Debug)]
-pub(crate) struct ContactPoint {
+pub struct ContactPoint {
     /// Index of the contact.
-    pub(crate) contact: usize,
+    pub contact: usize,
     /// Direction in which the motion is measured.
-    pub(crate) axis: [f64; 3],
+    pub axis: [f64; 3],
     /// Name of the side and its motion along the axis: the secondary node, and the primary node unless that side is
     /// rigid.
-    pub(crate) sides: Vec<(String, Sensor)>,
+    pub sides: Vec<(String, Sensor)>,
 }
 
 /// The secondary node nearest the centroid of the surface (of its points, weighted by their areas), and the primary
 /// node nearest to that one, unless it is the same; of the contact `chosen`, else of that of the exact solution, else of the first one. The axis is
 /// that of the exact solution, else the normal at the point, turned so that its largest component is positive.
-pub(crate) fn contact_point(
+pub fn contact_point(
     system: &System,
     reference: Option<&Reference>,
     chosen: Option<usize>,

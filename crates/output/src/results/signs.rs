@@ -7,7 +7,7 @@ use carom_bodies::Body;
 use carom_contact::Target;
 use carom_dynamics::{NumberedForce, System};
 
-use crate::plot::{Sign, What};
+use carom_pages::plot::{Sign, What};
 
 /// Bodies by name, supports, loads, masses, springs and contacts of a model.
 pub(crate) fn signs(system: &System) -> Vec<Sign> {

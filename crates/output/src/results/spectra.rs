@@ -4,12 +4,12 @@
 use carom_dynamics::{Order, State, StepReport, System};
 use carom_signals::{Record, response_spectrum};
 
-use crate::plot::{Logarithmic, Series};
 use crate::results::sensor::{COMPONENTS, Sensor};
 use crate::results::settings::{Settings, Spectrum};
 use crate::rows::Cell;
 use crate::table::write_csv;
 use crate::{Error, Folder, column};
+use carom_pages::plot::{Logarithmic, Series};
 
 /// The accelerations of the probes with a spectrum.
 #[derive(Debug)]
@@ -108,7 +108,7 @@ impl Spectra {
                     name: format!(
                         "{}, {direction}, {} %",
                         probe.name,
-                        crate::plot::digits(100.0 * damping, 3)
+                        carom_pages::plot::digits(100.0 * damping, 3)
                     ),
                     points: points.collect(),
                     law: None,

@@ -5,7 +5,7 @@ use std::time::Duration;
 use carom_dynamics::{AssemblyEnergies, AssemblyEnergy, Control, Ledger, Records, StepReport};
 use serde::{Deserialize, Serialize};
 
-use crate::plot::quantity;
+use carom_pages::plot::quantity;
 
 /// What is counted over the steps.
 #[derive(Debug, Default, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::plot::thin;
+use carom_pages::plot::thin;
 
 /// Most samples that a trace holds, if nothing else is said: 1 MB.
 const LIMIT: usize = 1 << 16;
@@ -11,7 +11,7 @@ const LIMIT: usize = 1 << 16;
 /// time so far, an eighth of its limit in number: no extreme is lost, and a figure, a few thousand dots wide, does not
 /// change.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Trace {
+pub struct Trace {
     points: Vec<(f64, f64)>,
     limit: usize,
 }
@@ -24,7 +24,7 @@ impl Default for Trace {
 
 impl Trace {
     /// With room for this many samples, eight at least.
-    pub(crate) fn of(limit: usize) -> Trace {
+    pub fn of(limit: usize) -> Trace {
         Trace {
             points: Vec::new(),
             limit: limit.max(8),
@@ -32,7 +32,7 @@ impl Trace {
     }
 
     /// Adds a sample, not before the last one. What is not finite cannot be drawn and is left out.
-    pub(crate) fn push(&mut self, time: f64, value: f64) {
+    pub fn push(&mut self, time: f64, value: f64) {
         if self.points.len() >= self.limit {
             self.points = thin(&self.points, self.limit / 8);
         }
@@ -42,23 +42,23 @@ impl Trace {
     }
 
     /// Whether another one, of a checkpoint, may take its place.
-    pub(crate) fn takes(&self, kept: &Trace) -> bool {
+    pub fn takes(&self, kept: &Trace) -> bool {
         let mut pairs = kept.points.windows(2);
         kept.limit == self.limit && pairs.all(|pair| pair[0].0 <= pair[1].0)
     }
 
     /// Whether there is nothing to draw.
-    pub(crate) fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
 
     /// The samples.
-    pub(crate) fn points(&self) -> &[(f64, f64)] {
+    pub fn points(&self) -> &[(f64, f64)] {
         &self.points
     }
 
     /// Abscissae and ordinates.
-    pub(crate) fn columns(&self) -> (Vec<f64>, Vec<f64>) {
+    pub fn columns(&self) -> (Vec<f64>, Vec<f64>) {
         self.points.iter().copied().unzip()
     }
 }

@@ -3,7 +3,7 @@
 use carom_dynamics::{ModelBody, System};
 use carom_zones::Zoned;
 
-use crate::plot::Shape;
+use carom_pages::plot::Shape;
 
 /// Zones and weights of the bodies, in the order of the model.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,11 +12,11 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::expectations::Expectations;
-use crate::form::near;
 use crate::maxima::Maxima;
 use crate::statistics::{Check, Level};
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
+use carom_pages::form::near;
 
 pub use contact::{Contact, Discrete, Friction, Load, PeakMoment, PeakResultant, Pretension};
 

@@ -1,7 +1,7 @@
 //! Figures: what must be in the drawing, and what cannot be drawn.
 
-use carom_output::Error;
-use carom_output::plot::{
+use carom_pages::Error;
+use carom_pages::plot::{
     ContactCurves, Curve, EnergyCurves, Figure, Role, contact_figure, energy_figure,
 };
 

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use carom_output::form::Form;
 use carom_output::summary::{self, Contact, Energy, Exact, Momentum};
 use carom_output::verdict::{Bounds, Grade, Line, Verdict};
 use carom_output::{ImpactRow, Report, Summary};
+use carom_pages::form::Form;
 
 fn line(value: f64, bounds: Bounds) -> Line {
     let quantity = "energy residual relative to the largest energy";

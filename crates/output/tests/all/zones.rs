@@ -12,9 +12,9 @@ use carom_dynamics::{
     Model, ModelBody, ModelContact, ModelLink, ModelTarget, Scheme, Stepper, march,
 };
 use carom_mesh::{ElementId, Surface, generate};
-use carom_output::compare::Recorder;
 use carom_output::summary::Zones;
 use carom_output::{Ending, Grade, Results, Summary, Zoning, checkpoint};
+use carom_studies::compare::Recorder;
 use carom_zones::{LinkKind, ModelZone, Whole, Zoned};
 
 use crate::models::{self, AREA, LENGTH, SPEED, STEEL};

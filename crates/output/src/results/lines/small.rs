@@ -2,9 +2,9 @@
 
 use carom_dynamics::{Largest, SmallSliding, SmallStrain, System};
 
-use crate::form::Form;
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
+use carom_pages::form::Form;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use carom_dynamics::System;
 
-use crate::page::block::Block;
-use crate::page::schema::Sign;
-use crate::plot::What;
 use crate::results::page::chosen::Chosen;
 use crate::results::signs::signs;
 use crate::results::stills::Seen;
+use carom_pages::page::block::Block;
+use carom_pages::page::schema::Sign;
+use carom_pages::plot::What;
 
 /// Most marks of one sign; of more only every second, third, … is there.
 const MARKS: usize = 60;

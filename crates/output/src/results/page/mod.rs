@@ -13,11 +13,11 @@ mod sides;
 mod surface;
 pub(crate) mod tiles;
 
-use crate::page::Data;
-use crate::page::block::Block;
-use crate::page::schema::{Event, Page, Quantity, Raster, RasterRows, SCHEMA};
-use crate::plot::PSEUDO_TIME;
 use crate::results::Results;
+use carom_pages::page::Data;
+use carom_pages::page::block::Block;
+use carom_pages::page::schema::{Event, Page, Quantity, Raster, RasterRows, SCHEMA};
+use carom_pages::plot::PSEUDO_TIME;
 use model::{CLOSING, LARGEST, RELEASE};
 
 pub(crate) use plots::Sources;

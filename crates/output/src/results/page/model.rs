@@ -5,8 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use carom_contact::Target;
 use carom_dynamics::{ContactPair, System};
 
-use crate::page::block::{Array, Block, COARSE, FINE};
-use crate::page::schema::{Field, Frame, Model, Obstacle, Peak};
 use crate::results::Results;
 use crate::results::cells::middle;
 use crate::results::outlines::size;
@@ -15,6 +13,8 @@ use crate::results::page::obstacles::{self, Near};
 use crate::results::page::surface::Surface;
 use crate::results::page::{marks, sides};
 use crate::results::stills::{Seen, Still};
+use carom_pages::page::block::{Array, Block, COARSE, FINE};
+use carom_pages::page::schema::{Field, Frame, Model, Obstacle, Peak};
 
 /// Numbers of all fields at all instants together, two bytes each before compression. A page of 100 000 nodes stays below 5 MB.
 const NUMBERS: usize = 2_000_000;

@@ -1,9 +1,5 @@
 //! The plots of a page, from what the run gathered.
 
-use crate::page::block::Block;
-use crate::page::draft::{self, Draft, Line, draft, line, zipped};
-use crate::page::schema::Plot;
-use crate::plot::{Logarithmic, quantity};
 use crate::results::Results;
 use crate::results::columns::moments;
 use crate::results::exact::{Polyline, force_curve, motion_curves};
@@ -13,6 +9,10 @@ use crate::results::sensor::COMPONENTS;
 use crate::results::stills::Still;
 use crate::results::trace::Trace;
 use carom_dynamics::ContactPair;
+use carom_pages::page::block::Block;
+use carom_pages::page::draft::{self, Draft, Line, draft, line, zipped};
+use carom_pages::page::schema::Plot;
+use carom_pages::plot::{Logarithmic, quantity};
 
 /// Contacts with plots of their own; more share them, eight in each.
 const OWN: usize = 4;

@@ -6,14 +6,14 @@ use carom_bodies::Body;
 use carom_dynamics::System;
 use serde::Serialize;
 
-use crate::form::percent;
 use crate::maxima::{Maxima, Maximum};
-use crate::plot::{quantity, scientific};
 use crate::results::Results;
 use crate::results::outlines::size;
 use crate::statistics::Margin;
 use crate::summary::{Contact, Energy, Summary};
 use crate::verdict::Grade;
+use carom_pages::form::percent;
+use carom_pages::plot::{quantity, scientific};
 
 /// A number with what it is about.
 #[derive(Clone, Debug, PartialEq, Serialize)]

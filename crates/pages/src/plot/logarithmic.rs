@@ -116,7 +116,7 @@ impl Logarithmic {
 
 impl Series {
     /// Whether it has a point that can be shown.
-    pub(crate) fn is_shown(&self) -> bool {
+    pub fn is_shown(&self) -> bool {
         self.shown().next().is_some()
     }
 

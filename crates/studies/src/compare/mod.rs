@@ -12,10 +12,10 @@ pub(crate) mod page;
 pub use columns::{COLUMNS, Column};
 pub use history::{History, Recorder, StepForce};
 
-use crate::form::percent;
-use crate::results::Reference;
-use crate::summary::{Contact, Summary};
-use crate::verdict::{Grade, Line, force_error};
+use carom_output::results::Reference;
+use carom_output::summary::{Contact, Summary};
+use carom_output::verdict::{Grade, Line, force_error};
+use carom_pages::form::percent;
 
 /// All variants, in the order of the table.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use crate::form::{self, NOTHING};
 use crate::plot::{self, digits, scientific};
 
 /// The head of a page up to the tag of its body; `style` stands after the style of all pages, `class` is that of the body.
-pub(crate) fn head(title: &str, style: &str, class: &str) -> String {
+pub fn head(title: &str, style: &str, class: &str) -> String {
     let shared = include_str!("../templates/style.css");
     format!(
         "<!DOCTYPE html>
@@ -24,7 +24,7 @@ pub(crate) fn head(title: &str, style: &str, class: &str) -> String {
 }
 
 /// A text as HTML, also within the quotes of an attribute.
-pub(crate) fn text(text: &str) -> String {
+pub fn text(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
@@ -41,7 +41,7 @@ pub(crate) fn text(text: &str) -> String {
 }
 
 /// A message as HTML: what stands between two backticks is code.
-pub(crate) fn code(message: &str) -> String {
+pub fn code(message: &str) -> String {
     let mut html = String::new();
     let parts: Vec<&str> = message.split('`').collect();
     for (k, part) in parts.iter().enumerate() {
@@ -68,28 +68,28 @@ fn options(code: &str) -> String {
 }
 
 /// The HTML of each item, one after the other.
-pub(crate) fn each<T>(items: impl IntoIterator<Item = T>, html: impl FnMut(T) -> String) -> String {
+pub fn each<T>(items: impl IntoIterator<Item = T>, html: impl FnMut(T) -> String) -> String {
     items.into_iter().map(html).collect()
 }
 
 /// The HTML, or nothing.
-pub(crate) fn when(condition: bool, html: impl FnOnce() -> String) -> String {
+pub fn when(condition: bool, html: impl FnOnce() -> String) -> String {
     if condition { html() } else { String::new() }
 }
 
 /// A number with its unit, or the sign for none.
-pub(crate) fn quantity(value: impl Into<Option<f64>>, unit: &str) -> String {
+pub fn quantity(value: impl Into<Option<f64>>, unit: &str) -> String {
     let shown = value.into().map(|value| plot::quantity(value, unit));
     shown.map_or(NOTHING.to_owned(), |shown| text(&shown))
 }
 
 /// A part as per cent, or the sign for none.
-pub(crate) fn percent(part: impl Into<Option<f64>>) -> String {
+pub fn percent(part: impl Into<Option<f64>>) -> String {
     part.into().map_or(NOTHING.to_owned(), form::percent)
 }
 
 /// A number of a balance: seven digits, or a power of ten where it is very small or very large; or the sign for none.
-pub(crate) fn exact(value: impl Into<Option<f64>>) -> String {
+pub fn exact(value: impl Into<Option<f64>>) -> String {
     let Some(value) = value.into() else {
         return NOTHING.to_owned();
     };
@@ -102,7 +102,7 @@ pub(crate) fn exact(value: impl Into<Option<f64>>) -> String {
 }
 
 /// A number of bytes with the prefix that people expect.
-pub(crate) fn bytes(count: u64) -> String {
+pub fn bytes(count: u64) -> String {
     match count as f64 {
         count if count >= 1e9 => format!("{:.2} GB", count / 1e9),
         count if count >= 1e6 => format!("{:.1} MB", count / 1e6),
@@ -112,29 +112,29 @@ pub(crate) fn bytes(count: u64) -> String {
 }
 
 /// A row of a table with a value, both as HTML but for the label, which is a text.
-pub(crate) fn row(label: &str, value: impl std::fmt::Display) -> String {
+pub fn row(label: &str, value: impl std::fmt::Display) -> String {
     let label = text(label);
     format!("<tr><th scope=\"row\">{label}</th><td>{value}</td></tr>")
 }
 
 /// Cells of a row.
-pub(crate) fn cells(cells: &[String]) -> String {
+pub fn cells(cells: &[String]) -> String {
     each(cells, |cell| format!("<td>{cell}</td>"))
 }
 
 /// A line of a table below its head: the name as text, then [`cells`].
-pub(crate) fn line(name: &str, cells: &str) -> String {
+pub fn line(name: &str, cells: &str) -> String {
     format!("\n<tr><th scope=\"row\">{}</th>{cells}</tr>", text(name))
 }
 
 /// The heads of columns, which are HTML.
-pub(crate) fn heads<S: AsRef<str>>(heads: &[S]) -> String {
+pub fn heads<S: AsRef<str>>(heads: &[S]) -> String {
     let cells = each(heads, |head| format!("<th>{}</th>", head.as_ref()));
     format!("<tr>{cells}</tr>")
 }
 
 /// A table of its own width with its heads; `dense`: of small letters.
-pub(crate) fn wide<S: AsRef<str>>(dense: bool, names: &[S], lines: &str) -> String {
+pub fn wide<S: AsRef<str>>(dense: bool, names: &[S], lines: &str) -> String {
     let class = if dense { " class=\"dense\"" } else { "" };
     let heads = heads(names);
     format!(
@@ -147,7 +147,7 @@ pub(crate) fn wide<S: AsRef<str>>(dense: bool, names: &[S], lines: &str) -> Stri
 }
 
 /// A table of texts, whose rows each begin with their name.
-pub(crate) fn texts(dense: bool, names: &[String], rows: &[Vec<String>]) -> String {
+pub fn texts(dense: bool, names: &[String], rows: &[Vec<String>]) -> String {
     let names: Vec<String> = names.iter().map(|name| text(name)).collect();
     let row = |row: &Vec<String>| {
         let rest = row.iter().skip(1).map(|cell| text(cell));
@@ -158,7 +158,7 @@ pub(crate) fn texts(dense: bool, names: &[String], rows: &[Vec<String>]) -> Stri
 }
 
 /// A section of messages under a head; nothing without any.
-pub(crate) fn messages(head: &str, items: &[String]) -> String {
+pub fn messages(head: &str, items: &[String]) -> String {
     when(!items.is_empty(), || {
         let items = each(items, |item| format!("<li>{item}</li>"));
         format!("\n<h2>{head}</h2>\n<ul class=\"plain\">{items}</ul>")
@@ -166,7 +166,7 @@ pub(crate) fn messages(head: &str, items: &[String]) -> String {
 }
 
 /// The class of the word of a verdict.
-pub(crate) fn class(verdict: &str) -> &str {
+pub fn class(verdict: &str) -> &str {
     match verdict {
         "good" | "look" => verdict,
         _ => "bad",
@@ -174,7 +174,7 @@ pub(crate) fn class(verdict: &str) -> &str {
 }
 
 /// What the program of a page reads, and the program.
-pub(crate) fn program([head, block]: &[String; 2]) -> String {
+pub fn program([head, block]: &[String; 2]) -> String {
     format!(
         "<script id=\"carom-page\" type=\"application/json\">{head}</script>
 <script id=\"carom-data\" type=\"text/plain\">{block}</script>

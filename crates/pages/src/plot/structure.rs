@@ -10,17 +10,17 @@ use super::scale::quantity;
 use crate::Error;
 
 /// A place and its displacement, m.
-pub(crate) type Moved = ([f64; 3], [f64; 3]);
+pub type Moved = ([f64; 3], [f64; 3]);
 
 /// A structure at an instant.
 #[derive(Clone, Debug)]
-pub(crate) struct Lines {
+pub struct Lines {
     /// Line under the picture.
-    pub(crate) caption: String,
+    pub caption: String,
     /// Ends of the lines.
-    pub(crate) lines: Vec<[Moved; 2]>,
+    pub lines: Vec<[Moved; 2]>,
     /// Contacts with a force: place, force in N, and whether it is the one that the picture is about.
-    pub(crate) marks: Vec<(Moved, f64, bool)>,
+    pub marks: Vec<(Moved, f64, bool)>,
 }
 
 const WIDTH: f64 = 960.0;
@@ -40,7 +40,7 @@ const NAMES: [&str; 3] = ["x", "y", "z"];
 ///
 /// # Errors
 /// [`Error::EmptyPanel`] without a line, or with places that are not finite.
-pub(crate) fn structure_figure(dim: usize, pictures: &[Lines]) -> Result<String, Error> {
+pub fn structure_figure(dim: usize, pictures: &[Lines]) -> Result<String, Error> {
     let ends = || pictures.iter().flat_map(|p| p.lines.iter().flatten());
     let [low, high] = bounds(ends().map(|(x, _)| *x));
     let sides = [0, 1, 2].map(|i| high[i] - low[i]);

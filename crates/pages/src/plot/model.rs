@@ -35,13 +35,13 @@ const fn axis(quantity: &'static str) -> Axis {
 
 /// A cell in the picture.
 #[derive(Clone, Debug)]
-pub(crate) struct Shape {
+pub struct Shape {
     /// Its zone.
-    pub(crate) zone: usize,
+    pub zone: usize,
     /// Its nodes, m.
-    pub(crate) points: Vec<[f64; 3]>,
+    pub points: Vec<[f64; 3]>,
     /// Its mean weights of inertia and internal work.
-    pub(crate) weights: [f64; 2],
+    pub weights: [f64; 2],
 }
 
 impl Shape {
@@ -85,7 +85,7 @@ impl Shape {
 ///
 /// # Errors
 /// [`Error::EmptyPanel`] without cells; [`Error::Drawing`].
-pub(crate) fn model_figure(dim: usize, zones: &[String], cells: &[Shape]) -> Result<String, Error> {
+pub fn model_figure(dim: usize, zones: &[String], cells: &[Shape]) -> Result<String, Error> {
     let title = "Zones of the model".to_owned();
     if cells.is_empty() {
         return Err(Error::EmptyPanel { panel: title });

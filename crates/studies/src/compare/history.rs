@@ -2,9 +2,9 @@
 
 use carom_dynamics::{Observer, Order, Stepper, System};
 
-use crate::results::Reference;
-use crate::results::sensor::{ContactPoint, contact_point};
-use crate::results::trace::Trace;
+use carom_output::results::Reference;
+use carom_output::results::sensor::{ContactPoint, contact_point};
+use carom_output::results::trace::Trace;
 
 /// A force that is constant over each step.
 #[derive(Clone, Debug, Default, PartialEq)]

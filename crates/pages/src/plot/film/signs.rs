@@ -12,10 +12,14 @@ const ARROW: f64 = 22.0;
 
 /// What a sign stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum What {
+pub enum What {
+    /// A body.
     Body,
+    /// A support.
     Support,
+    /// A load.
     Load,
+    /// A mass.
     Mass,
     /// Places in pairs: the ends of springs, dashpots and bolts.
     Link,
@@ -40,16 +44,17 @@ impl What {
 
 /// Something with a name, at some places.
 #[derive(Clone, Debug)]
-pub(crate) struct Sign {
-    pub(crate) what: What,
+pub struct Sign {
+    /// What it stands for.
+    pub what: What,
     /// Kind and name, beside the places.
-    pub(crate) label: String,
+    pub label: String,
     /// Numbers of the nodes at its places.
-    pub(crate) nodes: Vec<u32>,
+    pub nodes: Vec<u32>,
     /// Places, m.
-    pub(crate) places: Vec<[f64; 3]>,
+    pub places: Vec<[f64; 3]>,
     /// Directions of loads, one for each place, of any length.
-    pub(crate) ways: Vec<[f64; 3]>,
+    pub ways: Vec<[f64; 3]>,
 }
 
 /// Draws the signs over a frame, each with its label beside the first of its places, labels under each other where they would meet.

@@ -4,12 +4,15 @@ use std::path::PathBuf;
 
 use crate::compare::figures::{figures, page};
 use crate::compare::{Comparison, Standard, Variant, columns};
-use crate::form::NOTHING;
-use crate::html::{self, class, code, each, head, line, messages, quantity, text, wide};
-use crate::page::STYLE;
-use crate::plot::unless_empty;
-use crate::table::{Table, write_csv};
-use crate::{Absent, Error, Folder, atomic};
+use carom_output::Absent;
+use carom_output::Error;
+use carom_output::Folder;
+use carom_output::atomic;
+use carom_output::table::{Table, write_csv};
+use carom_pages::form::NOTHING;
+use carom_pages::html::{self, class, code, each, head, line, messages, quantity, text, wide};
+use carom_pages::page::STYLE;
+use carom_pages::plot::unless_empty;
 
 impl Comparison {
     /// The table for people.
@@ -46,7 +49,7 @@ impl Comparison {
         Ok(page)
     }
 
-    fn html(&self, figures: &[String]) -> Result<String, Error> {
+    fn html(&self, figures: &[String]) -> Result<String, carom_pages::Error> {
         let title = format!("{}: comparison", self.title);
         let contact = self
             .contact()

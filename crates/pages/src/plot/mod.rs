@@ -16,12 +16,12 @@ mod thin;
 
 pub use figure::{Axis, Curve, Figure, Panel, Role};
 pub use figures::{ContactCurves, EnergyCurves, PSEUDO_TIME, contact_figure, energy_figure};
-pub(crate) use film::{Frame, Patch, Scene, Sign, What, film_figure};
+pub use film::{Frame, Patch, Scene, Sign, What, film_figure};
 pub use logarithmic::{Logarithmic, Series};
-pub(crate) use model::{Shape, model_figure};
+pub use model::{Shape, model_figure};
 pub use scale::{digits, quantity, rounded, scientific};
-pub(crate) use structure::{Lines, structure_figure};
-pub(crate) use thin::thin;
+pub use structure::{Lines, structure_figure};
+pub use thin::thin;
 
 use crate::Error;
 
@@ -29,7 +29,7 @@ use crate::Error;
 ///
 /// # Errors
 /// Another one of the figure.
-pub(crate) fn unless_empty(figure: Result<String, Error>) -> Result<Option<String>, Error> {
+pub fn unless_empty(figure: Result<String, Error>) -> Result<Option<String>, Error> {
     match figure {
         Err(Error::EmptyPanel { .. }) => Ok(None),
         other => other.map(Some),

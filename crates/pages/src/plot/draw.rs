@@ -3,8 +3,6 @@
 //! plotters places everything on whole pixels, so the drawing is made [`FINE`] times too large and shown smaller:
 //! lines are then placed, and are as wide, as they should be.
 
-use std::path::Path;
-
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -12,7 +10,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::scale::{Scale, Shown, extremes, quantity, shown};
 use super::thin::{clip, thin};
 use super::{Curve, Figure, Panel, Role};
-use crate::{Error, atomic};
+use crate::Error;
 
 /// Units of the drawing per displayed pixel.
 const FINE: i32 = 4;
@@ -81,14 +79,6 @@ impl Figure<'_> {
             panels,
             ..*self
         })
-    }
-
-    /// Writes the figure as one `.svg` file, whole or not at all.
-    ///
-    /// # Errors
-    /// As [`Figure::svg`], and [`Error::File`].
-    pub fn write(&self, path: &Path) -> Result<(), Error> {
-        atomic::write_text(path, &self.svg()?)
     }
 }
 
@@ -342,7 +332,7 @@ pub(super) fn fine(pixels: i32) -> i32 {
 pub(super) fn shrink(svg: &str, title: &str, height: i32) -> String {
     let body = svg.split_once('>').map_or("", |(_, body)| body);
     let (fine_width, fine_height) = (fine(WIDTH), fine(height));
-    let title = crate::vtu::escape(title);
+    let title = crate::escape(title);
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{height}\" \
          viewBox=\"0 0 {fine_width} {fine_height}\" role=\"img\" aria-label=\"{title}\" stroke-linejoin=\"round\">{body}"

@@ -39,7 +39,7 @@ impl Form {
 const ROUNDING: f64 = 1e-12;
 
 /// A number, or zero where it is rounding beside numbers of this size.
-pub(crate) fn near(value: f64, size: f64) -> f64 {
+pub fn near(value: f64, size: f64) -> f64 {
     match value.abs() <= ROUNDING * size {
         true => 0.0,
         false => value,
@@ -47,9 +47,9 @@ pub(crate) fn near(value: f64, size: f64) -> f64 {
 }
 
 /// A part as per cent.
-pub(crate) fn percent(part: f64) -> String {
+pub fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part).replace('-', "−")
 }
 
 /// What stands for a value that does not exist.
-pub(crate) const NOTHING: &str = "–";
+pub const NOTHING: &str = "–";

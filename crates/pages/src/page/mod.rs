@@ -4,9 +4,8 @@
 //! text. Both are elements of the page, so that it stays one file that asks for nothing. The program is built from `report/` in the root of the
 //! repository. A page whose program does not run keeps its tables and its static figures.
 
-pub mod anchors;
 pub mod block;
-pub(crate) mod draft;
+pub mod draft;
 pub mod schema;
 
 use crate::Error;
@@ -14,10 +13,10 @@ use block::Block;
 use schema::Page;
 
 /// The program of the page.
-pub(crate) const PROGRAM: &str = include_str!("../../assets/report.js");
+pub const PROGRAM: &str = include_str!("../../assets/report.js");
 
 /// The style of what the program draws.
-pub(crate) const STYLE: &str = include_str!("../../assets/report.css");
+pub const STYLE: &str = include_str!("../../assets/report.css");
 
 /// The head of a page and its arrays.
 #[derive(Debug)]

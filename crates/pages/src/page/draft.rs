@@ -11,23 +11,27 @@ const SAMPLES: usize = 160_000;
 const OF_CURVE: [usize; 2] = [256, 6000];
 
 /// A curve before it is thinned.
-pub(crate) struct Line {
-    pub(crate) name: String,
+pub struct Line {
+    /// Its name.
+    pub name: String,
     /// As of [`Curve`].
-    pub(crate) role: &'static str,
-    pub(crate) points: Vec<(f64, f64)>,
+    pub role: &'static str,
+    /// Abscissa and ordinate of each sample.
+    pub points: Vec<(f64, f64)>,
     /// As of [`Curve`].
-    pub(crate) hidden: bool,
+    pub hidden: bool,
 }
 
 /// A plot with curves before they are thinned.
-pub(crate) struct Draft {
-    pub(crate) plot: Plot,
-    pub(crate) lines: Vec<Line>,
+pub struct Draft {
+    /// The plot.
+    pub plot: Plot,
+    /// Its lines.
+    pub lines: Vec<Line>,
 }
 
 /// A linear plot over time in a section of the page.
-pub(crate) fn draft(
+pub fn draft(
     id: &'static str,
     title: impl Into<String>,
     (quantity, unit): (&'static str, &'static str),
@@ -51,7 +55,7 @@ pub(crate) fn draft(
 }
 
 /// A curve.
-pub(crate) fn line(name: impl Into<String>, role: &'static str, points: Vec<(f64, f64)>) -> Line {
+pub fn line(name: impl Into<String>, role: &'static str, points: Vec<(f64, f64)>) -> Line {
     Line {
         name: name.into(),
         role,
@@ -61,7 +65,7 @@ pub(crate) fn line(name: impl Into<String>, role: &'static str, points: Vec<(f64
 }
 
 /// Curves of runs, each with whether its run is graded bad: those hide the others, and are drawn only on demand unless there are no others.
-pub(crate) fn of_runs(lines: Vec<(Line, bool)>) -> impl Iterator<Item = Line> {
+pub fn of_runs(lines: Vec<(Line, bool)>) -> impl Iterator<Item = Line> {
     let has_others = lines.iter().any(|(_, is_bad)| !is_bad);
     let one = move |(line, is_bad)| Line {
         hidden: is_bad && has_others,
@@ -71,12 +75,12 @@ pub(crate) fn of_runs(lines: Vec<(Line, bool)>) -> impl Iterator<Item = Line> {
 }
 
 /// Points from abscissae and ordinates.
-pub(crate) fn zipped((x, y): &(Vec<f64>, Vec<f64>)) -> Vec<(f64, f64)> {
+pub fn zipped((x, y): &(Vec<f64>, Vec<f64>)) -> Vec<(f64, f64)> {
     x.iter().copied().zip(y.iter().copied()).collect()
 }
 
 /// The plots with their curves in the block, thinned so that no extreme is lost; those without a curve are left out.
-pub(crate) fn plots(mut drafts: Vec<Draft>, block: &mut Block) -> Vec<Plot> {
+pub fn plots(mut drafts: Vec<Draft>, block: &mut Block) -> Vec<Plot> {
     for draft in &mut drafts {
         draft.lines.retain(|line| !line.points.is_empty());
     }

@@ -11,7 +11,7 @@ mod view;
 
 use std::fmt::Write as _;
 
-pub(crate) use self::signs::{Sign, What};
+pub use self::signs::{Sign, What};
 use self::tone::{Flat, LEVELS, SHADES, Tone, Window, colour};
 use self::view::project;
 use super::scale::quantity;
@@ -37,47 +37,47 @@ const LIGHT: [f64; 3] = [-0.2, 0.6, 0.77];
 
 /// A face, or a plane cell, with its value.
 #[derive(Clone, Debug)]
-pub(crate) struct Patch {
+pub struct Patch {
     /// Its nodes in turn, m; seen from outside they turn counter-clockwise.
-    pub(crate) points: Vec<[f64; 3]>,
+    pub points: Vec<[f64; 3]>,
     /// Its value, not negative.
-    pub(crate) value: f64,
+    pub value: f64,
 }
 
 /// The model at an instant, or in one shape.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Frame {
+pub struct Frame {
     /// Time, s.
-    pub(crate) time: f64,
+    pub time: f64,
     /// What is written under it.
-    pub(crate) caption: String,
+    pub caption: String,
     /// Cells of a plane model, outer faces of a solid.
-    pub(crate) patches: Vec<Patch>,
+    pub patches: Vec<Patch>,
     /// Outlines of plane bodies, and beams, each a piece of line, m.
-    pub(crate) rims: Vec<Vec<[f64; 3]>>,
+    pub rims: Vec<Vec<[f64; 3]>>,
     /// Places of plane models with a contact force, m.
-    pub(crate) marks: Vec<[f64; 3]>,
+    pub marks: Vec<[f64; 3]>,
     /// What acts on the model.
-    pub(crate) signs: Vec<Sign>,
+    pub signs: Vec<Sign>,
 }
 
 /// What a film shows beside its frames.
-pub(crate) struct Scene<'a> {
+pub struct Scene<'a> {
     /// Title of the picture.
-    pub(crate) title: &'a str,
+    pub title: &'a str,
     /// Dimension of the space.
-    pub(crate) dim: usize,
+    pub dim: usize,
     /// Name and unit of the values.
-    pub(crate) field: (&'a str, &'a str),
+    pub field: (&'a str, &'a str),
     /// Gap of a place over the rigid obstacles at a time in s, m: negative inside. Asked in the plane only.
-    pub(crate) gap: &'a dyn Fn(f64, [f64; 3]) -> f64,
+    pub gap: &'a dyn Fn(f64, [f64; 3]) -> f64,
 }
 
 /// The film strip of these instants as an SVG document.
 ///
 /// # Errors
 /// [`Error::EmptyPanel`] without anything to draw.
-pub(crate) fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Error> {
+pub fn film_figure(scene: &Scene, frames: &[Frame]) -> Result<String, Error> {
     let largest = shown_largest(frames);
     let drawn: Vec<Vec<Flat>> = frames
         .iter()

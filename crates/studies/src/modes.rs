@@ -6,14 +6,16 @@ use carom_dynamics::{Motion, Order, System};
 use carom_elements::Kind;
 use carom_reduction::Modes;
 
-use crate::form::{NOTHING, percent};
-use crate::html::{each, head, text, texts};
-use crate::plot::{Frame, Scene, film_figure, quantity};
-use crate::results::outlines::{Outlines, size};
-use crate::rows::Cell;
-use crate::table::{Table, write_csv};
-use crate::vtu::{Cells, Field, Grid, Values, write};
-use crate::{Error, Folder, atomic};
+use carom_output::Error;
+use carom_output::Folder;
+use carom_output::atomic;
+use carom_output::results::outlines::{Outlines, size};
+use carom_output::rows::Cell;
+use carom_output::table::{Table, write_csv};
+use carom_output::vtu::{Cells, Field, Grid, Values, write};
+use carom_pages::form::{NOTHING, percent};
+use carom_pages::html::{each, head, text, texts};
+use carom_pages::plot::{Frame, Scene, film_figure, quantity};
 
 /// Largest displacement of a shape in a picture, over the size of the model.
 const AMPLITUDE: f64 = 0.12;
@@ -259,7 +261,7 @@ impl ModeSet<'_> {
     }
 
     /// The first shapes of a part that deform it; none on a line, and none of points and springs alone.
-    fn figure(&self, part: &Modes) -> Option<Result<String, Error>> {
+    fn figure(&self, part: &Modes) -> Option<Result<String, carom_pages::Error>> {
         let system = self.system;
         let outlines = Outlines::new(system, |body, _| part.bodies.contains(&body));
         if system.dim < 2 || outlines.is_blank() {

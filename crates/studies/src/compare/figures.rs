@@ -1,14 +1,13 @@
 //! The figures of a comparison: each quantity against time, all variants over the exact solution.
 
-use crate::Error;
 use crate::compare::{Comparison, Done};
-use crate::page::Data;
-use crate::page::block::Block;
-use crate::page::draft::{self, Line, draft, line, of_runs, zipped};
-use crate::page::schema::{Page, Quantity, SCHEMA};
-use crate::plot::{Axis, Curve, Figure, Panel, Role};
-use crate::results::exact::{Polyline, force_curve, motion_curves};
-use crate::results::trace::Trace;
+use carom_output::results::exact::{Polyline, force_curve, motion_curves};
+use carom_output::results::trace::Trace;
+use carom_pages::page::Data;
+use carom_pages::page::block::Block;
+use carom_pages::page::draft::{self, Line, draft, line, of_runs, zipped};
+use carom_pages::page::schema::{Page, Quantity, SCHEMA};
+use carom_pages::plot::{Axis, Curve, Figure, Panel, Role};
 
 /// Names of the variants with their curves.
 type Curves<'a> = Vec<(&'a str, Polyline)>;
@@ -35,7 +34,9 @@ fn drawn(comparison: &Comparison) -> Vec<(&str, &Done)> {
 }
 
 /// File names and figures as SVG; a quantity that no variant has is left out.
-pub(crate) fn figures(comparison: &Comparison) -> Vec<(&'static str, Result<String, Error>)> {
+pub(crate) fn figures(
+    comparison: &Comparison,
+) -> Vec<(&'static str, Result<String, carom_pages::Error>)> {
     let done = drawn(comparison);
     let end = done.iter().map(|(_, d)| d.summary.time.end);
     let end = end.fold(0.0, f64::max);
