@@ -128,3 +128,25 @@ time = {{ end = 0.5, step = {step:?}, scheme.newmark = {{}} }}
     assert_eq!(grade(1e-2), Grade::Bad);
     assert_eq!(grade(1e-4), Grade::Good);
 }
+
+/// A rigid square falls on the ground at 1 m/s under the law in the rate, which takes all of it: Newmark's scheme takes the rate for that of a step
+/// before, and the square leaves as fast as it came; the theta scheme with the law at the end of the step stays.
+#[test]
+fn a_rigid_body_that_rebounds_against_its_law_is_bad() {
+    let square = |scheme: &str| {
+        format!(
+            r#"
+carom = 1
+mesh.generate.a.rectangle = {{ origin = [0.0, 0.0105], size = [0.1, 0.1], elements = [2, 2] }}
+material.m = {{ density = 1000.0, neo-hooke = {{ young = 1e7, poisson = 0.3 }} }}
+body.a = {{ region = "a", material = "m", rigid = {{}}, section.plane-strain.thickness = 1.0, initial.velocity = [0.0, -1.0] }}
+contact.c = {{ secondary = "a.bottom", obstacle.plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}, law.velocity = {{}} }}
+time = {{ end = 0.03, step = 1e-3, {scheme} }}
+"#
+        )
+    };
+    let (summary, _) = result(&square("scheme.newmark = {}"));
+    assert_eq!(line(&summary, "rebound"), Some((Grade::Bad, 1.0)));
+    let (summary, _) = result(&square("scheme.theta = {}"));
+    assert_eq!(line(&summary, "rebound"), None);
+}

@@ -7,6 +7,7 @@ pub fn section(line: &str) -> &'static str {
         "energy-gain" | "scheme-made" | "contact-work" | "contact-loss" | "scheme-loss"
         | "scheme-energy" | "hourglass" => "plot-energy",
         "chatter" | "closed" => "plot-status",
+        "rebound" => "plot-energy",
         "sampling" => "plot-load",
         "penetration" | "passing" | "crossing" | "penetration-between" => "plot-gap",
         "step-in-contact" | "force-error" | "not-finite" | "clipped-tension" | "points-closed" => {

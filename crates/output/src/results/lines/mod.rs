@@ -17,6 +17,7 @@ mod locking;
 mod momentum;
 mod patches;
 mod penetration;
+mod rebound;
 mod resolution;
 mod sampling;
 mod scales;
@@ -55,6 +56,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     penetration::of_passing,
     crossing::of_contacts,
     crossing::between,
+    rebound::of_rigid_bodies,
     resolution::of_peaks,
     resolution::of_impulses,
     patches::of_contacts,
