@@ -154,7 +154,7 @@ impl Driver {
         self.earlier.add(costs);
     }
 
-    /// Ends a step early where this is set; it then fails with [`Error::Interrupted`]. Not on ranks, which all
+    /// Ends a step early where this is set; it then fails with [`crate::Error::Interrupted`]. Not on ranks, which all
     /// take the same steps: they end between two steps.
     pub fn heed(&mut self, interrupt: &Interrupt) {
         if self.ranks.are_several() {

@@ -15,7 +15,7 @@ const TICK: f64 = 0.4;
 /// and springs alone.
 ///
 /// # Errors
-/// [`Error::Drawing`].
+/// [`carom_pages::Error::Drawing`].
 pub fn model_picture(system: &System) -> Option<Result<String, carom_pages::Error>> {
     if system.dim < 2 {
         return lines(system);
