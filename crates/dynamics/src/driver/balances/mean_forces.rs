@@ -33,16 +33,13 @@ impl MeanForces<'_> {
     /// The same, and the resultant at the places of the step.
     pub(super) fn work_and_resultant(&mut self, force: Weighted) -> (f64, Resultant) {
         let force = mean_force(force, &self.system.spans, self.mean);
-        let (old, new) = (self.old, self.new);
-        let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
-        let work = work(force, 0..force.len(), [old, new]);
-        (work, Resultant::at(self.system, places, force))
+        of_mean(self.system, force, [self.old, self.new])
     }
 
     /// The same, with the work on each connected part added to what it is `given` from outside.
     pub(crate) fn given(&mut self, force: Weighted, given: &mut [f64]) -> (f64, Resultant) {
-        let both = self.work_and_resultant(force);
         let force = mean_force(force, &self.system.spans, self.mean);
+        let both = of_mean(self.system, force, [self.old, self.new]);
         if !force.is_empty() {
             for (given, part) in given.iter_mut().zip(&self.system.parts) {
                 *given += work(force, part.clone(), [self.old, self.new]);
@@ -50,6 +47,13 @@ impl MeanForces<'_> {
         }
         both
     }
+}
+
+/// Work of a mean force on the way of the step, J, and its resultant at the places of the step.
+fn of_mean(system: &System, force: &[f64], [old, new]: [&Motion; 2]) -> (f64, Resultant) {
+    let places = (&old.frames[..], &[&old.u[..], &new.u[..]][..]);
+    let work = work(force, 0..force.len(), [old, new]);
+    (work, Resultant::at(system, places, force))
 }
 
 /// Work of the forces of some unknowns on the way from one motion to another, J.
