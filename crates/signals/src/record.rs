@@ -141,7 +141,8 @@ impl Record {
     /// v₊ = v + h (a + a₊)/2, u₊ = u + h v + h² (2 a + a₊)/6, summed with compensation.
     pub fn integrals(&self) -> Vec<[f64; 2]> {
         let (mut v, mut u) = (Sum::default(), Sum::default());
-        let mut all = vec![[0.0; 2]];
+        let mut all = Vec::with_capacity(self.points.len());
+        all.push([0.0; 2]);
         for pair in self.points.windows(2) {
             let [[t0, a0], [t1, a1]] = [pair[0], pair[1]];
             let h = t1 - t0;
