@@ -17,6 +17,15 @@ use crate::schema::is_name;
 use crate::tree::{Item, Node, join};
 use carom_quantities::units::{Dimension, UnitError, length_of_unit, parse_quantity};
 
+/// Keys as other programs and other readers of the field call them.
+const ELSEWHERE: [(&str, &str); 5] = [
+    ("gravity", "`load.<name>.acceleration`, without `on`"),
+    ("angular-velocity", "`body.<name>.initial.spin`"),
+    ("dt", "`time.step`"),
+    ("master", "`primary`"),
+    ("slave", "`secondary`"),
+];
+
 /// Longest value that a message shows whole.
 const SHOWN: usize = 60;
 
@@ -302,7 +311,9 @@ impl<'a> Walker<'a> {
             found: None,
             ..Problem::new(join(path, key), message).unknown(key, known.keys().copied())
         };
-        if problem.nearest.is_none() {
+        if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| *there == key) {
+            problem = problem.note(format!("it is called {here} here"));
+        } else if problem.nearest.is_none() {
             let places = below(self.schema, known, key);
             if (1..=MOST_PLACES).contains(&places.len()) {
                 let above = if path.is_empty() { "" } else { "." };

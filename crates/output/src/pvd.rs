@@ -3,8 +3,9 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use crate::{Error, atomic};
 use carom_pages::escape;
+
+use crate::{Error, atomic};
 
 /// A PVD collection. The file is rewritten whole at each addition, so that it names exactly the field files which
 /// are complete, whenever the run is cut. (60 bytes an entry: cheap beside the field file itself.)

@@ -1,8 +1,7 @@
 //! Whether a result can be relied on: graded lines, each with its number, its bounds and what would put it right.
 
-use serde::{Deserialize, Serialize};
-
 use carom_pages::form::Form;
+use serde::{Deserialize, Serialize};
 
 /// Part of a bound that rounding may leave of a number that is as large.
 const ROUNDING: f64 = 1e-8;

@@ -5,12 +5,12 @@
 //! blocks, length of a block before compression, length of the last block if it is shorter (else 0), compressed
 //! length of each block, then the compressed blocks. Source: VTK file formats, XML, "appended", "compressor".
 
-use carom_pages::escape;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
 
 use carom_elements::{Kind, MAX_NODES};
+use carom_pages::escape;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 

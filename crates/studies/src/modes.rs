@@ -4,18 +4,15 @@ use std::path::PathBuf;
 
 use carom_dynamics::{Motion, Order, System};
 use carom_elements::Kind;
-use carom_reduction::Modes;
-
-use carom_output::Error;
-use carom_output::Folder;
-use carom_output::atomic;
 use carom_output::results::outlines::{Outlines, size};
 use carom_output::rows::Cell;
 use carom_output::table::{Table, write_csv};
 use carom_output::vtu::{Cells, Field, Grid, Values, write};
+use carom_output::{Error, Folder, atomic};
 use carom_pages::form::{NOTHING, percent};
 use carom_pages::html::{each, head, text, texts};
 use carom_pages::plot::{Frame, Scene, film_figure, quantity};
+use carom_reduction::Modes;
 
 /// Largest displacement of a shape in a picture, over the size of the model.
 const AMPLITUDE: f64 = 0.12;

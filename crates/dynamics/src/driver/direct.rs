@@ -4,11 +4,11 @@
 //! end are written where they stay, and one pass ([`Update`]) finds accelerations, velocities and all terms of the balances. Contact
 //! forces are those of the interface problem of the other steps; where no point may carry one, it is not looked at.
 
-use super::attempt::Attempt;
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::Driver;
+use super::attempt::Attempt;
 use super::attempt::forces::Loads;
 use super::explicit::leapfrog::{Direct, is_leapfrog};
 use crate::error::Error;

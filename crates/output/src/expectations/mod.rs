@@ -10,12 +10,11 @@ mod row;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use carom_pages::form::Form;
 use serde_json::Value;
 
 use crate::Error;
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
-
 pub use row::{Expectation, Expectations, Expected, Judged, Kind, MISSED, Range, Take, Told};
 
 impl Expected {

@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
-
 use carom_pages::form::percent;
 use carom_pages::plot::{quantity, rounded};
+use serde::{Deserialize, Serialize};
 
 /// Part of a bound that rounding may exceed it by.
 const ROUNDING: f64 = 1e-12;

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::summary::{Angular, Energy, Momentum, Summary};
 use carom_pages::form::near;
 use carom_pages::html::{each, exact, line, row, text};
+
+use crate::summary::{Angular, Energy, Momentum, Summary};
 
 /// The tables with their head.
 pub(super) fn tables(summary: &Summary) -> String {

@@ -1,8 +1,9 @@
 //! What contacts did: columns of a table where there are few, its rows where there are many.
 
-use crate::summary::{Contact, Friction, Summary};
 use carom_pages::form::near;
 use carom_pages::html::{cells, each, line, quantity, text, when, wide};
+
+use crate::summary::{Contact, Friction, Summary};
 
 /// Contacts that are columns of a table; more are its rows.
 pub(super) const FEW: usize = 6;

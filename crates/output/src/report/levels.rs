@@ -1,9 +1,10 @@
 //! Levels of contacts, what is allowed, and statistics of impacts.
 
+use carom_pages::html::{cells, each, heads, line, percent, quantity, text, when, wide};
+
 use crate::report::contacts::joules;
 use crate::statistics::{Histogram, Level, Margin, Statistics};
 use crate::summary::Summary;
-use carom_pages::html::{cells, each, heads, line, percent, quantity, text, when, wide};
 
 /// Levels against what they may bear.
 pub(super) fn levels(summary: &Summary) -> String {

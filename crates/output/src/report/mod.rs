@@ -13,14 +13,15 @@ mod work;
 
 use std::path::Path;
 
+use carom_pages::html;
+use carom_pages::html::{code, each, messages, text, when};
+use carom_pages::page::{Data, STYLE};
+
 use crate::report::anchors::section;
 use crate::results::{BodyQuality, Tile};
 use crate::summary::Summary;
 use crate::verdict::{Grade, Verdict};
 use crate::{Error, ImpactRow, atomic};
-use carom_pages::html;
-use carom_pages::html::{code, each, messages, text, when};
-use carom_pages::page::{Data, STYLE};
 
 /// What the page shows.
 #[derive(Clone, Copy, Debug)]

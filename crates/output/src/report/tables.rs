@@ -1,11 +1,12 @@
 //! Expectations, impacts, springs, bolts, loads, and the distance from an exact solution.
 
+use carom_pages::form::near;
+use carom_pages::html::{cells, code, each, line, percent, quantity, text, when, wide};
+
 use crate::ImpactRow;
 use crate::expectations::{Expectations, MISSED};
 use crate::report::contacts::joules;
 use crate::summary::Summary;
-use carom_pages::form::near;
-use carom_pages::html::{cells, code, each, line, percent, quantity, text, when, wide};
 
 /// What the case must give, with what the run gave.
 pub(super) fn expectations(summary: &Summary) -> String {

@@ -1,8 +1,9 @@
 //! Zones, quality of the mesh, and the model with the work done on it.
 
+use carom_pages::html::{bytes, cells, each, exact, line, quantity, row, text, when, wide};
+
 use crate::results::BodyQuality;
 use crate::summary::{Counts, Link, Model, Newton, Summary, Time, Zone, Zones};
-use carom_pages::html::{bytes, cells, each, exact, line, quantity, row, text, when, wide};
 
 /// Bodies that are named; of more their number is told.
 const NAMED: usize = 8;

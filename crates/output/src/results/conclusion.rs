@@ -3,23 +3,21 @@
 use std::collections::BTreeMap;
 
 use carom_dynamics::{ContactRecord, Ledger, System};
+use carom_pages::plot::{Logarithmic, model_figure, unless_empty};
 
 use crate::results::columns::files;
 use crate::results::costs::{counts, courant, newton, timings};
-use crate::results::exact;
 use crate::results::film::film;
 use crate::results::lines::{Evidence, judge};
 use crate::results::page::quality::qualities;
 use crate::results::page::tiles::tiles;
 use crate::results::page::{self, Sources};
-use crate::results::reduced;
 use crate::results::totals::Last;
-use crate::results::{Comparison, Ending, Results, allowables, contacts, largest};
+use crate::results::{Comparison, Ending, Results, allowables, contacts, exact, largest, reduced};
 use crate::summary::{
     Angular, Energy, Exact, Model, Momentum, Rejected, Summary, Time, Zones, hash,
 };
 use crate::{Error, Report, atomic, checkpoint};
-use carom_pages::plot::{Logarithmic, model_figure, unless_empty};
 
 impl Results {
     /// Writes figures, report and summary, after the run has told its end to the observers

@@ -9,7 +9,7 @@ use crate::results::sensor::{ContactPoint, Sensor};
 
 /// Sums of squares of an error and of what it is relative to.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub struct Norms {
+pub(crate) struct Norms {
     error: f64,
     size: f64,
 }
@@ -28,14 +28,14 @@ impl Norms {
 
 /// The comparison, growing with the run.
 #[derive(Debug)]
-pub struct Comparison {
+pub(crate) struct Comparison {
     pub(crate) reference: Reference,
     pub(crate) errors: Errors,
 }
 
 /// What the comparison has gathered.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub struct Errors {
+pub(crate) struct Errors {
     /// Force of each step, or part of one, against the mean of the exact force over it, over those that meet the exact
     /// contact.
     pub force: Norms,
@@ -103,14 +103,14 @@ fn sign(body: usize) -> f64 {
 }
 
 /// Speed at which the mean motions of the bars part, m/s: each is positive away from the contact.
-pub fn opening_speed(solution: &Solution, t: f64) -> f64 {
+pub(crate) fn opening_speed(solution: &Solution, t: f64) -> f64 {
     let motions = solution.motions().iter();
     motions.map(|m| m.momentum(t) / m.bar().mass()).sum()
 }
 
 /// Whether the bars have parted by a time, and nothing but the contact has changed their momenta: neither a clamp nor
 /// gravity.
-pub fn parts_freely(solution: &Solution, t: f64) -> bool {
+pub(crate) fn parts_freely(solution: &Solution, t: f64) -> bool {
     let free =
         |motion: &Motion| motion.bar().far_end == FarEnd::Free && motion.bar().acceleration == 0.0;
     let parted = |contact: &carom_exact::Contact| contact.end < t;

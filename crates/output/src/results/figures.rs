@@ -1,16 +1,16 @@
 //! The figures of a run, from what was kept while it went.
 
 use carom_dynamics::{Order, State, StepReport, System};
+use carom_pages::plot::{
+    Axis, ContactCurves, Curve, EnergyCurves, Figure, PSEUDO_TIME, Role, contact_figure,
+    energy_figure,
+};
 use serde::{Deserialize, Serialize};
 
 use crate::results::exact::{Polyline, force_curve, motion_curves};
 use crate::results::sensor::{COMPONENTS, ContactPoint, Sensor};
 use crate::results::trace::Trace;
 use crate::results::{Reference, Settings};
-use carom_pages::plot::{
-    Axis, ContactCurves, Curve, EnergyCurves, Figure, PSEUDO_TIME, Role, contact_figure,
-    energy_figure,
-};
 
 /// Histories for the figures, in bounded memory.
 #[derive(Debug)]

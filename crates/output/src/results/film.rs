@@ -1,10 +1,10 @@
 //! The film strip: six of the instants at equal times.
 
 use carom_dynamics::System;
+use carom_pages::plot::{Frame, Scene, film_figure, quantity};
 
 use crate::results::outlines::{Outlines, gap, size};
 use crate::results::stills::{FILM, Still, Stills};
-use carom_pages::plot::{Frame, Scene, film_figure, quantity};
 
 /// Displacement, relative to the size of the model, below which the pictures of a linear run would all look the same.
 const VISIBLE: f64 = 0.01;

@@ -1,11 +1,11 @@
 //! A look at a model before it runs: its picture.
 
 use carom_dynamics::System;
+use carom_pages::plot::{Axis, Curve, Figure, Frame, Panel, Role, Scene, film_figure};
 
 use crate::results::outlines::{Outlines, gap};
 use crate::results::page::quality::qualities;
 use crate::results::signs::signs;
-use carom_pages::plot::{Axis, Curve, Figure, Frame, Panel, Role, Scene, film_figure};
 
 /// Height of the tick at a node, over the distance of two bodies under each other.
 const TICK: f64 = 0.4;

@@ -4,17 +4,19 @@
 
 use carom_contact::Point;
 use carom_dynamics::{Order, State, StepReport, System};
+use carom_pages::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
 use serde::{Deserialize, Serialize};
 
 use crate::results::outlines::{Outlines, gap, size};
 use crate::results::settings::LevelSettings;
 use crate::results::stills::GROWTH;
-use carom_pages::plot::{Frame, Lines, Scene, digits, film_figure, quantity, structure_figure};
 
 /// Most instants that are drawn.
 const DRAWN: usize = 3;
+
 /// Most lines of a structure that is drawn.
 const LINES: usize = 20_000;
+
 /// Largest displacement drawn of solids, as a part of the longest side of the model; larger ones are drawn as they are.
 const SHOWN: f64 = 0.06;
 

@@ -68,19 +68,17 @@ use figures::Curves;
 use filtered::Filtered;
 use histories::Histories;
 use impacts::Impacts;
+pub use inspect::model_picture;
 use instants::Instants;
 use loads::Loads;
-use page::raster::RasterOf;
-use page::series::SeriesOf;
-use sensor::ContactPoint;
-use support_peaks::SupportPeaks;
-
-pub use inspect::model_picture;
 pub use names::{Quantity, columns_with_units, quantities};
 pub use page::quality::{BodyQuality, qualities};
+use page::raster::RasterOf;
+use page::series::SeriesOf;
 pub use page::tiles::Tile;
 pub use pieces::Piece;
 pub use rank_pieces::Pieces;
+use sensor::ContactPoint;
 pub use settings::{
     AllowableSettings, Bearer, Checkpoints, Ending, Fields, LevelSettings, Probe, Reference,
     Settings, Spectrum,
@@ -88,6 +86,7 @@ pub use settings::{
 use spectra::Spectra;
 use stills::Stills;
 use stressed::Stressed;
+use support_peaks::SupportPeaks;
 use totals::{Last, Totals};
 pub use zoning::Zoning;
 

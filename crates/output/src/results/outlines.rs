@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use carom_contact::Target;
 use carom_dynamics::System;
-
 use carom_pages::plot::{Frame, Patch};
 
 /// Longest side of the box around the undeformed model, m.
@@ -130,7 +129,7 @@ impl Outlines {
     }
 
     /// Whether there are cells or faces with an area.
-    pub fn has_patches(&self) -> bool {
+    pub(crate) fn has_patches(&self) -> bool {
         !self.patches.is_empty()
     }
 

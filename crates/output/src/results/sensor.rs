@@ -7,7 +7,7 @@ use crate::Error;
 use crate::results::{Probe, Reference};
 
 /// Names of the components.
-pub const COMPONENTS: [&str; 3] = ["x", "y", "z"];
+pub(crate) const COMPONENTS: [&str; 3] = ["x", "y", "z"];
 
 /// Σ c · q over nodes of their displacements, velocities or accelerations q.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ impl Sensor {
 ///
 /// # Errors
 /// [`Error::Probe`] if none of its nodes belongs to a body.
-pub fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Error> {
+pub(crate) fn of_probe(system: &System, probe: &Probe) -> Result<Vec<Sensor>, Error> {
     let numbers = probe.nodes.iter();
     let numbers = numbers.map(|&(node, weight)| (system.number[node as usize], weight));
     let nodes: Vec<(u32, f64)> = numbers.filter(|(node, _)| *node != u32::MAX).collect();

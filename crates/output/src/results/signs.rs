@@ -6,7 +6,6 @@ use carom_algebra::unknowns::Kind;
 use carom_bodies::Body;
 use carom_contact::Target;
 use carom_dynamics::{NumberedForce, System};
-
 use carom_pages::plot::{Sign, What};
 
 /// Bodies by name, supports, loads, masses, springs and contacts of a model.

@@ -2,6 +2,7 @@
 //! the floor spectrum.
 
 use carom_dynamics::{Order, State, StepReport, System};
+use carom_pages::plot::{Logarithmic, Series};
 use carom_signals::{Record, response_spectrum};
 
 use crate::results::sensor::{COMPONENTS, Sensor};
@@ -9,7 +10,6 @@ use crate::results::settings::{Settings, Spectrum};
 use crate::rows::Cell;
 use crate::table::write_csv;
 use crate::{Error, Folder, column};
-use carom_pages::plot::{Logarithmic, Series};
 
 /// The accelerations of the probes with a spectrum.
 #[derive(Debug)]

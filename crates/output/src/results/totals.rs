@@ -3,9 +3,8 @@
 use std::time::Duration;
 
 use carom_dynamics::{AssemblyEnergies, AssemblyEnergy, Control, Ledger, Records, StepReport};
-use serde::{Deserialize, Serialize};
-
 use carom_pages::plot::quantity;
+use serde::{Deserialize, Serialize};
 
 /// What is counted over the steps.
 #[derive(Debug, Default, Serialize, Deserialize)]

@@ -1,8 +1,7 @@
 //! A history kept for a figure, in bounded memory.
 
-use serde::{Deserialize, Serialize};
-
 use carom_pages::plot::thin;
+use serde::{Deserialize, Serialize};
 
 /// Most samples that a trace holds, if nothing else is said: 1 MB.
 const LIMIT: usize = 1 << 16;

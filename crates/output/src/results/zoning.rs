@@ -1,9 +1,8 @@
 //! What the output knows of a model in zones beside its system.
 
 use carom_dynamics::{ModelBody, System};
-use carom_zones::Zoned;
-
 use carom_pages::plot::Shape;
+use carom_zones::Zoned;
 
 /// Zones and weights of the bodies, in the order of the model.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,10 +5,11 @@
 
 mod contact;
 
-use carom_algebra::fingerprint::Fingerprint;
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use carom_algebra::fingerprint::Fingerprint;
+use carom_pages::form::near;
 use serde::{Deserialize, Serialize};
 
 use crate::expectations::Expectations;
@@ -16,8 +17,6 @@ use crate::maxima::Maxima;
 use crate::statistics::{Check, Level};
 use crate::verdict::Verdict;
 use crate::{Error, atomic};
-use carom_pages::form::near;
-
 pub use contact::{Contact, Discrete, Friction, Load, PeakMoment, PeakResultant, Pretension};
 
 /// Everything that `summary.json` says.

@@ -16,6 +16,7 @@ use crate::Error;
 
 /// Levels of displacements, and of fields, which colours show: 16 and 12 bits.
 pub const FINE: u16 = u16::MAX;
+
 /// See [`FINE`].
 pub const COARSE: u16 = (1 << 12) - 1;
 

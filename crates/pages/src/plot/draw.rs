@@ -17,20 +17,32 @@ const FINE: i32 = 4;
 
 // Sizes in displayed pixels.
 const WIDTH: i32 = 960;
+
 const PANEL_HEIGHT: i32 = 310;
+
 const TITLE_HEIGHT: i32 = 34;
+
 const HEAD_HEIGHT: i32 = 46;
+
 /// Height of each further line of the legend.
 const LEGEND_LINE: i32 = 18;
+
 const X_LABELS: i32 = 50;
+
 const Y_LABELS: i32 = 66;
+
 const RIGHT_MARGIN: i32 = 18;
 
 const PAPER: RGBColor = RGBColor(0xff, 0xff, 0xff);
+
 pub(super) const INK: RGBColor = RGBColor(0x22, 0x22, 0x22);
+
 const FAINT_INK: RGBColor = RGBColor(0x66, 0x66, 0x66);
+
 pub(super) const GRID: RGBColor = RGBColor(0xe4, 0xe4, 0xe4);
+
 pub(super) const EXACT: RGBColor = RGBColor(0xf4, 0xc1, 0x5d);
+
 /// Colours of computed curves, told apart by every kind of colour vision and on dark paper too.
 pub(super) const COMPUTED: [RGBColor; 12] = [
     RGBColor(0x1f, 0x6f, 0xc0),
@@ -48,7 +60,9 @@ pub(super) const COMPUTED: [RGBColor; 12] = [
 ];
 
 type Area<'a, 'b> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+
 type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
 pub(super) type Outcome = Result<(), Box<dyn std::error::Error>>;
 
 impl Figure<'_> {
@@ -276,26 +290,31 @@ pub(super) const NAME: Font = Font {
     anchor: HPos::Center,
     upright: false,
 };
+
 /// Name of an ordinate.
 pub(super) const UPRIGHT: Font = Font {
     upright: true,
     ..NAME
 };
+
 pub(super) const TITLE: Font = Font {
     size: 16.0,
     weight: FontStyle::Bold,
     ..NAME
 };
+
 const HEAD: Font = Font {
     size: 13.0,
     weight: FontStyle::Bold,
     anchor: HPos::Left,
     ..NAME
 };
+
 pub(super) const LEGEND: Font = Font {
     anchor: HPos::Left,
     ..NAME
 };
+
 const NOTE: Font = Font {
     size: 11.0,
     colour: FAINT_INK,

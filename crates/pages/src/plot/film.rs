@@ -6,6 +6,8 @@
 
 mod signs;
 mod squares;
+#[cfg(test)]
+mod tests;
 mod tone;
 mod view;
 
@@ -18,18 +20,26 @@ use super::scale::quantity;
 use crate::Error;
 
 const WIDTH: f64 = 960.0;
+
 /// Bound of the height of all frames together.
 const HEIGHT: f64 = 760.0;
+
 const HEAD: f64 = 74.0;
+
 /// Room under a frame for its time, and between frames.
 const CAPTION: f64 = 24.0;
+
 const SPACE: f64 = 12.0;
+
 /// Margin around the model in a frame, as a part of its longer side.
 const MARGIN: f64 = 0.04;
+
 /// Faces in a frame beyond which it is drawn in squares, and the squares along its longer side.
 const FACES: usize = 2000;
+
 /// Mean size of a face in pixels below which its edges are not drawn.
 const FINE: f64 = 5.0;
+
 /// Height in pixels of the stripes that obstacles are drawn with.
 const STRIPE: f64 = 1.0;
 
@@ -230,20 +240,23 @@ fn draw_head(scene: &Scene, window: &Window, largest: f64, frames: &[Frame], svg
         scene.title
     );
     let (mut x, y) = (24.0, 46.0);
-    for level in 0..LEVELS {
-        let _ = write!(
-            svg,
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"6.2\" height=\"10\" fill=\"{}\"/>",
-            x + 6.0 * level as f64,
-            y - 5.0,
-            colour(Tone::bright(level))
-        );
+    // rigid bodies have no stress: nothing is coloured
+    if largest > 0.0 {
+        for level in 0..LEVELS {
+            let _ = write!(
+                svg,
+                "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"6.2\" height=\"10\" fill=\"{}\"/>",
+                x + 6.0 * level as f64,
+                y - 5.0,
+                colour(Tone::bright(level))
+            );
+        }
+        x += 6.0 * LEVELS as f64 + 8.0;
+        let (name, unit) = scene.field;
+        let text = format!("{name}, 0 to {} and above", quantity(largest, unit));
+        write_text(svg, [x, y], &text);
+        x += 24.0 + 6.4 * text.chars().count() as f64;
     }
-    x += 6.0 * LEVELS as f64 + 8.0;
-    let (name, unit) = scene.field;
-    let text = format!("{name}, 0 to {} and above", quantity(largest, unit));
-    write_text(svg, [x, y], &text);
-    x += 24.0 + 6.4 * text.chars().count() as f64;
     let length = round_length(90.0 / window.scale);
     let pixels = window.scale * length;
     let _ = writeln!(
@@ -403,6 +416,3 @@ fn draw_obstacles(scene: &Scene, time: f64, window: &Window, svg: &mut String) {
 fn stripe(path: &mut String, [x, y]: [f64; 2], length: f64) {
     let _ = write!(path, "M{x:.1},{y:.1}h{length:.1}");
 }
-
-#[cfg(test)]
-mod tests;

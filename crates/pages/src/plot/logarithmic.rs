@@ -2,14 +2,19 @@
 
 use plotters::prelude::*;
 
-use super::draw::{COMPUTED, EXACT, INK, fine, font_size, line, shrink, write};
-use super::draw::{GRID, LEGEND, NAME, Outcome, TITLE, UPRIGHT};
+use super::draw::{
+    COMPUTED, EXACT, GRID, INK, LEGEND, NAME, Outcome, TITLE, UPRIGHT, fine, font_size, line,
+    shrink, write,
+};
 use super::{Role, scientific};
 use crate::Error;
 
 const WIDTH: i32 = 960;
+
 const HEIGHT: i32 = 520;
+
 const TITLE_HEIGHT: i32 = 34;
+
 const LEGEND_WIDTH: i32 = 330;
 
 /// Points and straight lines over logarithmic axes.

@@ -14,6 +14,7 @@ mod scale;
 mod structure;
 mod thin;
 
+use crate::Error;
 pub use figure::{Axis, Curve, Figure, Panel, Role};
 pub use figures::{ContactCurves, EnergyCurves, PSEUDO_TIME, contact_figure, energy_figure};
 pub use film::{Frame, Patch, Scene, Sign, What, film_figure};
@@ -22,8 +23,6 @@ pub use model::{Shape, model_figure};
 pub use scale::{digits, quantity, rounded, scientific};
 pub use structure::{Lines, structure_figure};
 pub use thin::thin;
-
-use crate::Error;
 
 /// A figure that was drawn; none without anything to draw, which is left out and ends no run.
 ///

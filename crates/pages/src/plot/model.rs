@@ -3,24 +3,36 @@
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::draw::{COMPUTED, GRID, INK, LEGEND, NAME, Outcome, TITLE, UPRIGHT};
-use super::draw::{fine, font_size, line, shrink, write};
+use super::draw::{
+    COMPUTED, GRID, INK, LEGEND, NAME, Outcome, TITLE, UPRIGHT, fine, font_size, line, shrink,
+    write,
+};
 use super::scale::Scale;
 use super::{Axis, Role};
 use crate::Error;
 
 const WIDTH: i32 = 960;
+
 const TITLE_HEIGHT: i32 = 34;
+
 const LEGEND_LINE: i32 = 20;
+
 const LEFT: i32 = 80;
+
 const RIGHT: i32 = 18;
+
 const X_LABELS: i32 = 56;
+
 /// Height of a picture in one dimension, and the bounds of the others.
 const STRIP_HEIGHT: i32 = 300;
+
 const HEIGHTS: [i32; 2] = [120, 820];
+
 /// Squares over the width of a picture in two or three dimensions, and the width of a stripe in squares.
 const SQUARES: usize = 220;
+
 const STRIPE: usize = 2;
+
 /// Height of the strip under the weights, which go from 0 to 1.
 const STRIP: f64 = 0.3;
 
@@ -207,6 +219,7 @@ fn largest(ranges: &[[f64; 2]; 3]) -> [usize; 2] {
 }
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+
 type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 struct Picture<'a> {

@@ -17,7 +17,7 @@ const PREFIXES: [&str; 10] = ["f", "p", "n", "µ", "m", "", "k", "M", "G", "T"];
 
 /// What an axis shows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scale {
+pub(crate) struct Scale {
     /// Data are divided by this before they are drawn.
     pub factor: f64,
     /// Lower end of the axis, after division.
@@ -167,7 +167,7 @@ pub fn scientific(value: f64, decimals: usize) -> String {
 
 /// The factor which brings `largest` between 1 and 1000, and the unit with it: a prefix where the unit takes one,
 /// a power of ten before it otherwise.
-pub fn engineering(unit: &str, largest: f64) -> (f64, String) {
+pub(crate) fn engineering(unit: &str, largest: f64) -> (f64, String) {
     let plain = (1.0, unit.to_owned());
     if largest < NOTHING || !largest.is_finite() {
         return plain;

@@ -10,7 +10,7 @@ use super::scale::quantity;
 use crate::Error;
 
 /// A place and its displacement, m.
-pub type Moved = ([f64; 3], [f64; 3]);
+pub(crate) type Moved = ([f64; 3], [f64; 3]);
 
 /// A structure at an instant.
 #[derive(Clone, Debug)]
@@ -24,16 +24,23 @@ pub struct Lines {
 }
 
 const WIDTH: f64 = 960.0;
+
 /// Bound of the height of a view.
 const HEIGHT: f64 = 420.0;
+
 /// Room above the views and under each.
 const HEAD: f64 = 40.0;
+
 const CAPTION: f64 = 30.0;
+
 const SPACE: f64 = 24.0;
+
 /// Largest displacement drawn, as a part of the longest side of the structure.
 const SHOWN: f64 = 0.06;
+
 /// Radius of the mark of the largest force.
 const MARK: f64 = 7.0;
+
 const NAMES: [&str; 3] = ["x", "y", "z"];
 
 /// The pictures as an SVG document.

@@ -1,12 +1,12 @@
 //! The columns of the table of a comparison, each once: text, CSV and page are made from this list.
 
-use crate::compare::{Comparison, Done, Outcome, Standard, Variant};
 use carom_output::Absent;
 use carom_output::rows::Cell;
 use carom_output::summary::Contact;
 use carom_output::table::Table;
-use carom_pages::form::Form;
-use carom_pages::form::NOTHING;
+use carom_pages::form::{Form, NOTHING};
+
+use crate::compare::{Comparison, Done, Outcome, Standard, Variant};
 
 /// A column.
 #[derive(Clone, Copy, Debug)]

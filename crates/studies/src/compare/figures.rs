@@ -1,6 +1,5 @@
 //! The figures of a comparison: each quantity against time, all variants over the exact solution.
 
-use crate::compare::{Comparison, Done};
 use carom_output::results::exact::{Polyline, force_curve, motion_curves};
 use carom_output::results::trace::Trace;
 use carom_pages::page::Data;
@@ -8,6 +7,8 @@ use carom_pages::page::block::Block;
 use carom_pages::page::draft::{self, Line, draft, line, of_runs, zipped};
 use carom_pages::page::schema::{Page, Quantity, SCHEMA};
 use carom_pages::plot::{Axis, Curve, Figure, Panel, Role};
+
+use crate::compare::{Comparison, Done};
 
 /// Names of the variants with their curves.
 type Curves<'a> = Vec<(&'a str, Polyline)>;

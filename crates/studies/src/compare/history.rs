@@ -1,7 +1,6 @@
 //! What a comparison keeps of a run beside its summary: the force of every step or part of one, and the curves of the figures.
 
 use carom_dynamics::{Observer, Order, Stepper, System};
-
 use carom_output::results::Reference;
 use carom_output::results::sensor::{ContactPoint, contact_point};
 use carom_output::results::trace::Trace;

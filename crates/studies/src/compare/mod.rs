@@ -9,13 +9,12 @@ mod figures;
 mod history;
 pub(crate) mod page;
 
-pub use columns::{COLUMNS, Column};
-pub use history::{History, Recorder, StepForce};
-
 use carom_output::results::Reference;
 use carom_output::summary::{Contact, Summary};
 use carom_output::verdict::{Grade, Line, force_error};
 use carom_pages::form::percent;
+pub use columns::{COLUMNS, Column};
+pub use history::{History, Recorder, StepForce};
 
 /// All variants, in the order of the table.
 #[derive(Clone, Debug)]

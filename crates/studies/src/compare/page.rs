@@ -2,17 +2,15 @@
 
 use std::path::PathBuf;
 
-use crate::compare::figures::{figures, page};
-use crate::compare::{Comparison, Standard, Variant, columns};
-use carom_output::Absent;
-use carom_output::Error;
-use carom_output::Folder;
-use carom_output::atomic;
 use carom_output::table::{Table, write_csv};
+use carom_output::{Absent, Error, Folder, atomic};
 use carom_pages::form::NOTHING;
 use carom_pages::html::{self, class, code, each, head, line, messages, quantity, text, wide};
 use carom_pages::page::STYLE;
 use carom_pages::plot::unless_empty;
+
+use crate::compare::figures::{figures, page};
+use crate::compare::{Comparison, Standard, Variant, columns};
 
 impl Comparison {
     /// The table for people.

@@ -1,15 +1,15 @@
 //! The envelope of the runs of a study: for each contact and level the largest force, the largest energy of an impact and the work of friction over all
 //! records, gaps and directions, with the run that gives it.
 
-use crate::study::Study;
-use carom_output::Error;
-use carom_output::Folder;
 use carom_output::rows::Cell;
 use carom_output::statistics::{Level, Statistics};
 use carom_output::summary::Summary;
 use carom_output::table::{Table, write_csv};
+use carom_output::{Error, Folder};
 use carom_pages::form;
 use carom_pages::plot::{quantity, rounded};
+
+use crate::study::Study;
 
 /// A largest value and the run that it is from.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,14 @@
 //! The force histories of a study in one figure: those of the runs, or of the nearest one over the history that a fit wants.
 
-use crate::compare::{Done, StepForce};
-use crate::study::{Run, Study};
 use carom_output::results::exact::Polyline;
 use carom_pages::page::block::Block;
 use carom_pages::page::draft::{self, draft, line, of_runs, zipped};
 use carom_pages::page::schema::{Page, SCHEMA};
 use carom_pages::page::{self, Data};
 use carom_pages::plot::{Axis, Curve, Figure, Panel, Role};
+
+use crate::compare::{Done, StepForce};
+use crate::study::{Run, Study};
 
 /// Most runs whose curves one can tell apart.
 const MOST: usize = 8;

@@ -2,19 +2,17 @@
 
 use std::path::PathBuf;
 
-use crate::compare::page::{inner, reasons, verdict_row, verdict_table};
-use crate::compare::{Done, StepForce};
-use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
-use carom_output::Absent;
-use carom_output::Error;
-use carom_output::Folder;
-use carom_output::atomic;
 use carom_output::rows::Cell;
 use carom_output::table::{Table, write_csv};
+use carom_output::{Absent, Error, Folder, atomic};
 use carom_pages::form::NOTHING;
 use carom_pages::html::{self, code, each, head, messages, text, texts, when};
 use carom_pages::page::STYLE;
 use carom_pages::plot::{Logarithmic, Series, quantity, rounded};
+
+use crate::compare::page::{inner, reasons, verdict_row, verdict_table};
+use crate::compare::{Done, StepForce};
+use crate::study::{Abscissa, Order, Quantity, Run, Source, Study};
 
 /// What is said wherever the raw peak is shown.
 pub const RAW_PEAK: &str = "the raw peak of a single step does not converge where the force jumps; use the peak of the mean";

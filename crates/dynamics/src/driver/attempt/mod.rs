@@ -27,7 +27,6 @@ use crate::contact_sums::ContactSums;
 use crate::control::Control;
 use crate::costs::Phases;
 use crate::error::Error;
-
 use crate::report::Notices;
 use crate::scheme::EnergyIdentity;
 use crate::state::{State, state_without_motion};

@@ -8,13 +8,14 @@ mod supports;
 mod worked;
 mod works;
 
+use carom_algebra::rotation::Rotation;
+use carom_system::Motion;
+
 use crate::driver::attempt::Attempt;
 use crate::driver::attempt::forces::Loads;
 use crate::error::Error;
 use crate::resultant::Resultant;
 use crate::system::System;
-use carom_algebra::rotation::Rotation;
-use carom_system::Motion;
 use supports::Jump;
 use works::Works;
 

@@ -1,16 +1,17 @@
 //! The contact problem of a diagonal matrix: groups of points that share no unknown are solved apart, on all threads. Of a large
 //! group the compliance is the product of its sparse rows, and nothing is dense.
 
+use std::sync::Arc;
+
+use carom_nonsmooth::Unsolved;
+use rayon::prelude::*;
+
 use super::Contacts;
 use super::span::{Candidates, Span};
 use crate::driver::attempt::Attempt;
 use crate::driver::explicit::leapfrog::Apart;
 use crate::error::Error;
-use crate::groups::Masses;
-use crate::groups::PointRows;
-use carom_nonsmooth::Unsolved;
-use rayon::prelude::*;
-use std::sync::Arc;
+use crate::groups::{Masses, PointRows};
 
 /// Rows of the largest group whose problem is kept where it is not solved.
 const KEPT: usize = 1000;

@@ -1,18 +1,18 @@
 //! The contact forces of an iteration.
 
-use super::describe::rows_of;
-use crate::coulomb::Slip;
-use crate::driver::paired::sums_compliances;
-use crate::driver::stages::impulse::Impulses;
-use carom_nonsmooth::{Compliance as D, Condensed, ContactSolver, Unsolved};
-use carom_system::ContactPair;
 use std::sync::Arc;
 
+use carom_nonsmooth::{Compliance as D, Condensed, ContactSolver, Unsolved};
+use carom_system::ContactPair;
+
 use super::Contacts;
+use super::describe::rows_of;
 use crate::compliance::Compliance;
-use crate::coulomb::{FrictionFailure, FrictionProblem};
+use crate::coulomb::{FrictionFailure, FrictionProblem, Slip};
 use crate::driver::attempt::Attempt;
+use crate::driver::paired::sums_compliances;
 use crate::driver::parts::Parts;
+use crate::driver::stages::impulse::Impulses;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
 use crate::operator::Operators;

@@ -28,10 +28,9 @@ pub(crate) mod span;
 pub(crate) mod tangents;
 pub(crate) mod weak;
 
-use crate::march::FailedProblem;
-use carom_algebra::Interrupt;
 use std::cell::RefCell;
 
+use carom_algebra::Interrupt;
 use carom_algebra::solver::Saddle;
 use carom_contact::law::Level;
 use carom_contact::{Contact, Pairing, Rows, Search, Sliding};
@@ -44,6 +43,7 @@ use crate::driver::attempt::{Attempt, SizeOfMaps};
 use crate::driver::paired::PairingMode;
 use crate::error::Error;
 use crate::interface::InterfaceProblem;
+use crate::march::FailedProblem;
 use crate::system::System;
 use active::Active;
 use closings::Closings;
@@ -98,6 +98,43 @@ pub(crate) struct Contacts {
 }
 
 impl Contacts {
+    /// Those of a system.
+    ///
+    /// # Errors
+    /// A weak form that is not positive definite.
+    pub(crate) fn of(system: &System) -> Result<Contacts, Error> {
+        Ok(Contacts {
+            pairing_modes: Vec::new(),
+            turns: false,
+            by_rate: false,
+            solver: ContactSolver::default(),
+            group_solvers: Vec::new(),
+            saddle: RefCell::default(),
+            pairing: Pairing::default(),
+            initial: vec![Pairing::default(); system.contacts.len()],
+            search: system.contacts.iter().map(|_| Search::default()).collect(),
+            narrowed: Vec::new(),
+            narrowed_for: 0,
+            active: Active::of(system),
+            passage: Passage::of(system),
+            far: Far::of(system, |_| true),
+            closings: Closings::of(system),
+            rebound: Rebound::of(system),
+            candidates: Vec::new(),
+            candidate_data: CandidateData::default(),
+            free_gaps: Vec::new(),
+            weak: WeakForms::new(system)?,
+            with_weak: WithWeak::default(),
+            stacked: Rows::default(),
+            slips: Vec::new(),
+            failed: None,
+            failed_friction: None,
+            sums: Vec::new(),
+            nodal: Vec::new(),
+            rows_stand: false,
+        })
+    }
+
     /// Points of a contact whose weak form gives them a force of another sign than their own.
     pub(crate) fn mixed(&mut self, contact: usize, forces: &[f64]) -> usize {
         self.weak.mixed(contact, forces)
@@ -224,42 +261,5 @@ impl Contacts {
         attempt.sized = sized;
         attempt.renew_maps(dt, next);
         self.renew_pairing_modes(attempt);
-    }
-
-    /// Those of a system.
-    ///
-    /// # Errors
-    /// A weak form that is not positive definite.
-    pub(crate) fn of(system: &System) -> Result<Contacts, Error> {
-        Ok(Contacts {
-            pairing_modes: Vec::new(),
-            turns: false,
-            by_rate: false,
-            solver: ContactSolver::default(),
-            group_solvers: Vec::new(),
-            saddle: RefCell::default(),
-            pairing: Pairing::default(),
-            initial: vec![Pairing::default(); system.contacts.len()],
-            search: system.contacts.iter().map(|_| Search::default()).collect(),
-            narrowed: Vec::new(),
-            narrowed_for: 0,
-            active: Active::of(system),
-            passage: Passage::of(system),
-            far: Far::of(system, |_| true),
-            closings: Closings::of(system),
-            rebound: Rebound::of(system),
-            candidates: Vec::new(),
-            candidate_data: CandidateData::default(),
-            free_gaps: Vec::new(),
-            weak: WeakForms::new(system)?,
-            with_weak: WithWeak::default(),
-            stacked: Rows::default(),
-            slips: Vec::new(),
-            failed: None,
-            failed_friction: None,
-            sums: Vec::new(),
-            nodal: Vec::new(),
-            rows_stand: false,
-        })
     }
 }

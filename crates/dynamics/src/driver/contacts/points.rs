@@ -1,6 +1,5 @@
 //! The contacts of an iteration: where they are paired, and what their laws see.
 
-use crate::system::System;
 use std::sync::Arc;
 
 use carom_contact::law::{End, Level, Status};
@@ -14,6 +13,7 @@ use crate::driver::attempt::vectors::Vectors;
 use crate::driver::paired::{Paired, append, instant, part_way, told};
 use crate::driver::parts::Parts;
 use crate::step_map::{Row, StepMap};
+use crate::system::System;
 
 /// Entry of a row of unit normals that is no rounding of a direction.
 const CLEARLY: f64 = 1e-3;

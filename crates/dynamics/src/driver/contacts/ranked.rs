@@ -1,7 +1,5 @@
 //! Contacts of explicit steps that several processes take together.
 
-use crate::shared::InReach;
-use crate::step_map::StepMap;
 use std::sync::Arc;
 
 use carom_contact::Search;
@@ -11,7 +9,8 @@ use super::far::Far;
 use crate::contact_sums::ContactSums;
 use crate::driver::attempt::Attempt;
 use crate::driver::explicit::leapfrog::Direct;
-use crate::shared::{Own, Part, Shared};
+use crate::shared::{InReach, Own, Part, Shared};
+use crate::step_map::StepMap;
 use crate::update::Sums;
 
 impl Contacts {

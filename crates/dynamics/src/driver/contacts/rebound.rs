@@ -50,16 +50,14 @@ impl Rebound {
 
     /// Begins the search for s where a rebound makes energy; whether it does anywhere.
     pub(crate) fn begin_limits(&mut self, rounding: f64) -> bool {
-        let gains = |first: usize| self.gains(first, 0.0, rounding);
-        let gaining: Vec<bool> = (0..self.first.len()).map(gains).collect();
-        if !gaining.contains(&true) {
-            return false;
+        let mut any = false;
+        for first in 0..self.first.len() {
+            let gains = self.gains(first, 0.0, rounding);
+            any |= gains;
+            self.least[first] = if gains { 0.0 } else { f64::INFINITY };
         }
         self.bounds.fill([0.0, 1.0]);
-        for (least, gains) in self.least.iter_mut().zip(gaining) {
-            *least = if gains { 0.0 } else { f64::INFINITY };
-        }
-        true
+        any
     }
 
     /// Takes what is made without rebound for the least.

@@ -1,9 +1,9 @@
 //! How much of the restitution of rigid bodies makes no energy.
 
-use super::rebound::Rebound;
 use std::sync::Arc;
 
 use super::Contacts;
+use super::rebound::Rebound;
 use crate::driver::attempt::Attempt;
 
 impl Contacts {

@@ -6,9 +6,9 @@ pub(crate) mod linking;
 mod start;
 mod turned;
 
-use crate::error::Error;
 use std::sync::Arc;
 
+use crate::error::Error;
 use crate::system::{LinkRow, System};
 use force_jump::ForceJump;
 use linking::Multipliers;
@@ -24,6 +24,20 @@ pub(crate) struct Links {
 }
 
 impl Links {
+    /// Those of a system.
+    pub(crate) fn of(system: &System) -> Links {
+        let unknowns = match system.links.rows.is_empty() {
+            true => 0,
+            false => system.unknowns(),
+        };
+        Links {
+            force: vec![0.0; unknowns],
+            jump: ForceJump::default(),
+            multipliers: Multipliers::new(system),
+            rows: Arc::clone(&system.links.rows),
+        }
+    }
+
     /// What contact forces push the rows with, N per unit of the row.
     pub(crate) fn pushed_mut(&mut self) -> &mut [f64] {
         &mut self.multipliers.change[1]
@@ -106,19 +120,5 @@ impl Links {
     /// The rows; those that turn as they are in the iteration.
     pub(crate) fn rows(&self) -> &Arc<Vec<LinkRow>> {
         &self.rows
-    }
-
-    /// Those of a system.
-    pub(crate) fn of(system: &System) -> Links {
-        let unknowns = match system.links.rows.is_empty() {
-            true => 0,
-            false => system.unknowns(),
-        };
-        Links {
-            force: vec![0.0; unknowns],
-            jump: ForceJump::default(),
-            multipliers: Multipliers::new(system),
-            rows: Arc::clone(&system.links.rows),
-        }
     }
 }

@@ -1,9 +1,10 @@
 //! How the parts go on where pieces float.
 
+use std::sync::Arc;
+
 use super::Parts;
 use super::rigid::Rigid;
 use crate::driver::attempt::Attempt;
-use std::sync::Arc;
 
 impl Parts {
     /// Adds to x what finite turns of the pieces have beyond the linear motion `share` dx from `before`.

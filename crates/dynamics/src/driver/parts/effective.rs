@@ -279,24 +279,21 @@ impl Effective {
 
     /// Whether there are matrices to solve with.
     pub(crate) fn has_matrices(&self) -> bool {
-        let ready = |now: &Matrices| now.operators.groups.iter().all(|g| g.operator.is_some());
-        self.now.as_ref().is_some_and(ready)
+        self.now.as_ref().is_some_and(Matrices::are_ready)
     }
 
     /// The factors, and the compliance that goes with them; none before all are made.
     pub(crate) fn both(&mut self) -> Option<(&mut Operators, &mut Compliance)> {
-        let now = self.now.as_mut()?;
-        let ready = now.operators.groups.iter().all(|g| g.operator.is_some());
-        ready.then_some((&mut now.operators, &mut now.compliance))
+        let (operators, compliance, _) = self.all()?;
+        Some((operators, compliance))
     }
 
     /// The factors, the compliance, and what links change, none without links; none of all before all factors are made.
     pub(crate) fn all(
         &mut self,
     ) -> Option<(&mut Operators, &mut Compliance, Option<&mut Linking>)> {
-        let now = self.now.as_mut()?;
-        let ready = now.operators.groups.iter().all(|g| g.operator.is_some());
-        ready.then_some((
+        let now = self.now.as_mut().filter(|now| now.are_ready())?;
+        Some((
             &mut now.operators,
             &mut now.compliance,
             now.linking.as_mut(),
@@ -365,6 +362,12 @@ fn is_any_linked(system: &System, parts: &[bool]) -> bool {
 }
 
 impl Matrices {
+    /// Whether all factors are made.
+    fn are_ready(&self) -> bool {
+        let mut groups = self.operators.groups.iter();
+        groups.all(|group| group.operator.is_some())
+    }
+
     /// Makes the matrices of the linear parts, and what solves with them. `made`: a number that no other matrices of the run have; `asked`: what solves
     /// with them in place of what is chosen.
     pub(crate) fn new(

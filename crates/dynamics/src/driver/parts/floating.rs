@@ -1,14 +1,16 @@
 //! Pieces that supports leave free in a static stage, and that contacts may hold: which they are, and what the iterations know of
 //! them. [`crate::driver::approach`] has what is done about them.
 
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use carom_contact::Target;
+
 use super::joined::{Group, Joined};
 use super::pieces::{Piece, Pieces};
 use crate::error::Error;
 use crate::system::System;
-use carom_contact::Target;
-use std::collections::BTreeMap;
-use std::ops::Range;
-use std::sync::Arc;
 
 /// σ, unless the matrix asks for more.
 const WEIGHT: f64 = 1e-6;

@@ -23,17 +23,17 @@ pub(crate) mod solve;
 mod start;
 mod tangent_solver;
 
-use crate::operator::Operators;
-use crate::state::InterfaceState;
-use carom_ranks::Ranks;
 use std::time::Instant;
 
 use carom_bodies::{Scratch, Stored};
+use carom_ranks::Ranks;
 
 use crate::driver::attempt::Attempt;
 use crate::driver::explicit::leapfrog::Direct;
 use crate::error::Error;
+use crate::operator::Operators;
 use crate::shared::Shared;
+use crate::state::InterfaceState;
 use crate::system::System;
 use effective::Effective;
 use floating::Floating;
@@ -64,6 +64,28 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
+    /// Those of a system.
+    ///
+    /// # Errors
+    /// A static stage of a body that neither supports nor contacts could hold.
+    pub(crate) fn of(system: &System) -> Result<Parts, Error> {
+        Ok(Parts {
+            effective: Effective::new(),
+            floating: Floating::new(system)?,
+            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
+            force_sweeps: 0,
+            residuals: Vec::new(),
+            pace: Pace::default(),
+            mixing: Mixing::default(),
+            refined: Refined::default(),
+            carried: Carried::default(),
+            squares: Vec::new(),
+            stored: Stored::default(),
+            prepared: false,
+            left_over: 0.0,
+        })
+    }
+
     /// Pieces that float, for the iterations that move them.
     pub(crate) fn floating_mut(&mut self) -> &mut Floating {
         &mut self.floating
@@ -227,28 +249,6 @@ impl Parts {
     /// Whether pieces float in the attempt under way.
     pub(crate) fn floats(&self, attempt: &Attempt) -> bool {
         attempt.maps.is_static() && !self.floating.pieces.is_empty()
-    }
-
-    /// Those of a system.
-    ///
-    /// # Errors
-    /// A static stage of a body that neither supports nor contacts could hold.
-    pub(crate) fn of(system: &System) -> Result<Parts, Error> {
-        Ok(Parts {
-            effective: Effective::new(),
-            floating: Floating::new(system)?,
-            scratch: system.bodies.iter().map(|_| Scratch::default()).collect(),
-            force_sweeps: 0,
-            residuals: Vec::new(),
-            pace: Pace::default(),
-            mixing: Mixing::default(),
-            refined: Refined::default(),
-            carried: Carried::default(),
-            squares: Vec::new(),
-            stored: Stored::default(),
-            prepared: false,
-            left_over: 0.0,
-        })
     }
 
     /// Internal forces and histories of the end, at the nodes of this rank.

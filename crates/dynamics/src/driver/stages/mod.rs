@@ -24,6 +24,30 @@ pub(crate) struct Stages {
 }
 
 impl Stages {
+    /// Those of a system, which is `released` in the dynamics.
+    ///
+    /// # Errors
+    /// A mass that is not positive definite.
+    pub(crate) fn of(system: &System, released: &System) -> Result<Stages, Error> {
+        let (scheme, points) = (system.scheme.get(), system.points());
+        let map = scheme.step_map(system.dt);
+        let projects = |contact: &ContactPair| contact.law.projects();
+        let stages = scheme.projects_predictor()
+            || scheme.restores_contact_work()
+            || sums_compliances(system, &map)
+            || map.uses_contact_acceleration() && !system.links.rows.is_empty();
+        let staged = stages && points > 0 || system.contacts.iter().any(projects);
+        Ok(Stages {
+            impulses: match staged {
+                true => Some(Impulses::new(released)?),
+                false => None,
+            },
+            projected: Projected::new(points),
+            predictor: Predictor::default(),
+            restoring: Restoring::default(),
+        })
+    }
+
     /// Whether there is a stage with the mass alone.
     pub(crate) fn are_any(&self) -> bool {
         self.impulses.is_some()
@@ -89,30 +113,6 @@ impl Stages {
         contacts
             .free_gap(point)
             .unwrap_or(attempt.next.interface.gap[point])
-    }
-
-    /// Those of a system, which is `released` in the dynamics.
-    ///
-    /// # Errors
-    /// A mass that is not positive definite.
-    pub(crate) fn of(system: &System, released: &System) -> Result<Stages, Error> {
-        let (scheme, points) = (system.scheme.get(), system.points());
-        let map = scheme.step_map(system.dt);
-        let projects = |contact: &ContactPair| contact.law.projects();
-        let stages = scheme.projects_predictor()
-            || scheme.restores_contact_work()
-            || sums_compliances(system, &map)
-            || map.uses_contact_acceleration() && !system.links.rows.is_empty();
-        let staged = stages && points > 0 || system.contacts.iter().any(projects);
-        Ok(Stages {
-            impulses: match staged {
-                true => Some(Impulses::new(released)?),
-                false => None,
-            },
-            projected: Projected::new(points),
-            predictor: Predictor::default(),
-            restoring: Restoring::default(),
-        })
     }
 }
 

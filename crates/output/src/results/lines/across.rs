@@ -2,11 +2,11 @@
 
 use carom_bodies::{Discrete, DiscreteKind};
 use carom_dynamics::System;
+use carom_pages::form::Form;
+use carom_pages::plot::quantity;
 
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
-use carom_pages::plot::quantity;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 

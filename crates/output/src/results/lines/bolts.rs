@@ -1,9 +1,10 @@
 //! Bolts that push.
 
-use crate::results::lines::{Evidence, Finding, worst};
-use crate::verdict::{Bounds, Line};
 use carom_pages::form::Form;
 use carom_pages::plot::quantity;
+
+use crate::results::lines::{Evidence, Finding, worst};
+use crate::verdict::{Bounds, Line};
 
 /// The largest compression of a bolt over its force at the end of the static stage: under compression the head of a bolt lifts off, which a bolt of the
 /// model does not.

@@ -1,8 +1,9 @@
 //! Contacts that switch on and off.
 
+use carom_pages::form::Form;
+
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Changes of status to a closing that is due: a sound contact has two. Above three every second point closes once more than
 /// it should. Above seven the force is a row of blows whose sizes are the step's: of two bars of 20 to 200 elements under all

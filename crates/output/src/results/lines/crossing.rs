@@ -1,8 +1,9 @@
 //! Contacts whose sides have changed sides without a force, within a step or between the points that carry forces.
 
+use carom_pages::form::Form;
+
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Grade, Line};
-use carom_pages::form::Form;
 
 /// Depth over the size of an element normal to the surface, as of a point that carries a force: between points that do, nothing keeps the
 /// other side out.

@@ -1,11 +1,11 @@
 //! The balance of energy.
 
 use carom_contact::Law;
+use carom_pages::form::Form;
 
 use crate::results::lines::resolution::has_waves;
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Bound of the residual relative to the largest energy. The balance is an identity of the linear step; what is left is
 /// the rounding of the solves, some 1e-16 a step, summed over up to a million steps.

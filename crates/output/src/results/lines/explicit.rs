@@ -1,8 +1,9 @@
 //! What bodies of explicit schemes have beside the model: hourglass control, mass scaling, deletion.
 
+use carom_pages::form::Form;
+
 use super::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Bounds of the largest energy of hourglass modes relative to the largest energy that the materials took. The control resists motions
 /// that one point does not see; up to a tenth is the rule of practice, and from a twentieth on it is worth a look.

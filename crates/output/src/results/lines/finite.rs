@@ -1,8 +1,9 @@
 //! Numbers that are none.
 
+use carom_pages::form::Form;
+
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// States with an energy or a force that is not finite.
 pub(super) fn states(evidence: &Evidence) -> Finding {

@@ -1,8 +1,9 @@
 //! What moved and what met: a run in which nothing happened that was asked about is not good.
 
+use carom_pages::form::Form;
+
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Contacts that never closed. A stop that nothing reaches is a result; a run in which no contact closed says nothing of impacts.
 pub(super) fn closed(evidence: &Evidence) -> Finding {

@@ -1,11 +1,11 @@
 //! Linear elements that lock in bending.
 
 use carom_dynamics::System;
+use carom_pages::form::Form;
+use carom_pages::plot::quantity;
 
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
-use carom_pages::plot::quantity;
 
 /// Energy by which elements lock, over the strain energy: where it is s, the body is too stiff in bending by 1/(1 - s) at least. One
 /// layer of squares has 0.26 to 0.38, two have 0.08 to 0.13, four have 0.02 to 0.04. What is above 0.15 is a sixth too stiff and more, which two

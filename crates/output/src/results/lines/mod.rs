@@ -57,6 +57,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     crossing::of_contacts,
     crossing::between,
     rebound::of_rigid_bodies,
+    rebound::under_the_law_in_the_gap,
     resolution::of_peaks,
     resolution::of_impulses,
     patches::of_contacts,

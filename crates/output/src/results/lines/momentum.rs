@@ -1,9 +1,10 @@
 //! The balance of momentum.
 
+use carom_pages::form::Form;
+
 use crate::results::lines::energy::{MOST_TOLERATED, of_tolerance, permitted, residual_remedy};
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Bound of the residual relative to the largest momentum. The balance is an identity of the linear step; what is left is
 /// the rounding of the solves, some 1e-16 a step, summed over up to a million steps.

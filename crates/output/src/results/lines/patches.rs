@@ -3,11 +3,11 @@
 use carom_bodies::Body;
 use carom_contact::Integration;
 use carom_dynamics::System;
+use carom_pages::form::Form;
 
 use super::resolution::LESSER;
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Nodes of a patch that is two elements wide, in the plane and in space (there of a quarter of it, cut along two planes of
 /// symmetry). A patch of one node has no radius: what indents then is a force at a node, whose compliance is that of the element

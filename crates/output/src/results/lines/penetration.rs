@@ -1,8 +1,9 @@
 //! Bodies that go into each other, and through each other.
 
+use carom_pages::form::Form;
+
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Penetration over the size of an element normal to the surface: spread over that element it is a strain that the result lacks.
 /// A tenth is more than any small strain; a whole element is deeper than the layer that carries the surface.

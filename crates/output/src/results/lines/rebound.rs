@@ -1,10 +1,11 @@
 //! Whether impacts of rigid bodies lose what their law takes.
 
 use carom_contact::Law;
+use carom_dynamics::{ContactPair, System};
+use carom_pages::form::Form;
 
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Part of the loss of the law that an impact loses at least. A blow beside the centre of mass takes from what moves at the point alone, which of a
 /// cube that falls on a corner is a fifth.
@@ -19,8 +20,7 @@ pub(super) fn of_rigid_bodies(evidence: &Evidence) -> Finding {
     let mut counts = vec![0.0; system.contacts.len()];
     for impact in records.ended() {
         let contact = impact.contact as usize;
-        let (Some(rebound), Some(law)) = (impact.restitution, restitution(evidence, contact))
-        else {
+        let (Some(rebound), Some(law)) = (impact.restitution, restitution(system, contact)) else {
             continue;
         };
         let taken = LEAST * (1.0 - law * law) * impact.energy_given;
@@ -47,17 +47,36 @@ pub(super) fn of_rigid_bodies(evidence: &Evidence) -> Finding {
     ))
 }
 
-/// The coefficient of restitution that the law of a contact has, where it has one and all bodies are rigid.
-fn restitution(evidence: &Evidence, contact: usize) -> Option<f64> {
+/// The contact of rigid bodies under the law in the gap that part fastest, over the speed of their approach: the law leaves this speed to the scheme.
+pub(super) fn under_the_law_in_the_gap(evidence: &Evidence) -> Finding {
     let system = evidence.system;
-    let pair = &system.contacts[contact];
-    let mut bodies = pair.bodies.iter();
-    if !bodies.all(|&body| system.bodies[body].as_rigid().is_some()) {
-        return None;
+    let impacts = evidence.last.records.ended();
+    let parted = impacts.filter_map(|impact| {
+        let pair = &system.contacts[impact.contact as usize];
+        let open = matches!(pair.law, Law::Displacement(_)) && has_rigid_bodies(system, pair);
+        Some((&*pair.name, impact.restitution.filter(|_| open)?))
+    });
+    match worst(parted) {
+        Some((name, part)) => Finding::Unchecked(format!(
+            "the speed at which the rigid bodies of contact `{name}` part, up to {part:.2} of that of their approach: `law.displacement` leaves it to \
+             the scheme; take `law.velocity` or `law.restitution`"
+        )),
+        None => Finding::Absent,
     }
+}
+
+/// The coefficient of restitution that the law of a contact has, where it has one and all bodies are rigid.
+fn restitution(system: &System, contact: usize) -> Option<f64> {
+    let pair = &system.contacts[contact];
     match &pair.law {
+        _ if !has_rigid_bodies(system, pair) => None,
         Law::Velocity(_) => Some(0.0),
         Law::Restitution(law) => Some(law.coefficient),
         _ => None,
     }
+}
+
+fn has_rigid_bodies(system: &System, pair: &ContactPair) -> bool {
+    let mut bodies = pair.bodies.iter();
+    bodies.all(|&body| system.bodies[body].as_rigid().is_some())
 }

@@ -2,10 +2,10 @@
 
 use carom_contact::law::Level;
 use carom_dynamics::{Impact, System};
+use carom_pages::form::Form;
 
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// The step over the duration of a contact. Of half a sine in n steps the trapezoid has the duration too long by (π/n)²/12, and
 /// meets the closing to within a step: some percent of the peak at ten steps. Impulses and energies may be right all the same.

@@ -1,10 +1,10 @@
 //! Whether the steps see the loads and motions that the case gives as functions of time.
 
 use carom_dynamics::Amplitude;
+use carom_pages::form::Form;
 
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 /// Bounds of what straight lines between the steps leave of a function of time, ∫ |a - a_h| dt over ∫ |a| dt. A sine of n steps a period
 /// loses (π/n)²/3 of it: a tenth at six steps. At a half the function that the run sees is another one.

@@ -1,10 +1,10 @@
 //! Whether what is assumed small has stayed small: strain and rotation of bodies at small strain, sliding of contacts.
 
 use carom_dynamics::{Largest, SmallSliding, SmallStrain, System};
+use carom_pages::form::Form;
 
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
-use carom_pages::form::Form;
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 

@@ -1,9 +1,10 @@
 //! What steps went on after, and that their result may show.
 
-use crate::results::lines::{Evidence, Finding};
-use crate::verdict::{Bounds, Line};
 use carom_pages::form::Form;
 use carom_pages::plot::quantity;
+
+use crate::results::lines::{Evidence, Finding};
+use crate::verdict::{Bounds, Line};
 
 /// Contact problems whose tension, which the law cuts off, did not settle: some points were left with a force that the law does not give.
 pub(super) fn tension(evidence: &Evidence) -> Finding {

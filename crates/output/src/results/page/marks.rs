@@ -3,16 +3,17 @@
 use std::collections::BTreeSet;
 
 use carom_dynamics::System;
-
-use crate::results::page::chosen::Chosen;
-use crate::results::signs::signs;
-use crate::results::stills::Seen;
 use carom_pages::page::block::Block;
 use carom_pages::page::schema::Sign;
 use carom_pages::plot::What;
 
+use crate::results::page::chosen::Chosen;
+use crate::results::signs::signs;
+use crate::results::stills::Seen;
+
 /// Most marks of one sign; of more only every second, third, … is there.
 const MARKS: usize = 60;
+
 /// Most signs, those with something to see before the names of bodies.
 const SIGNS: usize = 200;
 

@@ -13,13 +13,13 @@ mod sides;
 mod surface;
 pub(crate) mod tiles;
 
-use crate::results::Results;
 use carom_pages::page::Data;
 use carom_pages::page::block::Block;
 use carom_pages::page::schema::{Event, Page, Quantity, Raster, RasterRows, SCHEMA};
 use carom_pages::plot::PSEUDO_TIME;
-use model::{CLOSING, LARGEST, RELEASE};
 
+use crate::results::Results;
+use model::{CLOSING, LARGEST, RELEASE};
 pub(crate) use plots::Sources;
 
 /// The head of the page with its arrays. `qualities`: of the cells of all bodies.

@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use carom_contact::Target;
 use carom_dynamics::{ContactPair, System};
+use carom_pages::page::block::{Array, Block, COARSE, FINE};
+use carom_pages::page::schema::{Field, Frame, Model, Obstacle, Peak};
 
 use crate::results::Results;
 use crate::results::cells::middle;
@@ -13,8 +15,6 @@ use crate::results::page::obstacles::{self, Near};
 use crate::results::page::surface::Surface;
 use crate::results::page::{marks, sides};
 use crate::results::stills::{Seen, Still};
-use carom_pages::page::block::{Array, Block, COARSE, FINE};
-use carom_pages::page::schema::{Field, Frame, Model, Obstacle, Peak};
 
 /// Numbers of all fields at all instants together, two bytes each before compression. A page of 100 000 nodes stays below 5 MB.
 const NUMBERS: usize = 2_000_000;
@@ -27,9 +27,13 @@ const OBSTACLES: usize = 160;
 
 /// Names of the reasons for which instants are kept.
 pub(crate) const CLOSING: &str = "first closing";
+
 pub(crate) const LARGEST: &str = "largest force";
+
 pub(crate) const RELEASE: &str = "last release";
+
 const STRESS: &str = "largest stress";
+
 const EQUAL: &str = "equal times";
 
 /// The kept instants in their order, each with the reasons for it.

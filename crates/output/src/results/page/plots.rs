@@ -1,5 +1,11 @@
 //! The plots of a page, from what the run gathered.
 
+use carom_dynamics::ContactPair;
+use carom_pages::page::block::Block;
+use carom_pages::page::draft::{self, Draft, Line, draft, line, zipped};
+use carom_pages::page::schema::Plot;
+use carom_pages::plot::{Logarithmic, quantity};
+
 use crate::results::Results;
 use crate::results::columns::moments;
 use crate::results::exact::{Polyline, force_curve, motion_curves};
@@ -8,14 +14,10 @@ use crate::results::page::series::ContactSeries;
 use crate::results::sensor::COMPONENTS;
 use crate::results::stills::Still;
 use crate::results::trace::Trace;
-use carom_dynamics::ContactPair;
-use carom_pages::page::block::Block;
-use carom_pages::page::draft::{self, Draft, Line, draft, line, zipped};
-use carom_pages::page::schema::Plot;
-use carom_pages::plot::{Logarithmic, quantity};
 
 /// Contacts with plots of their own; more share them, eight in each.
 const OWN: usize = 4;
+
 const SHARED: usize = 8;
 
 /// Part of the largest energy or momentum below which a residual is rounding: the bound of the verdict.

@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use carom_contact::Target;
 use carom_dynamics::System;
 use carom_elements::Kind;
+use carom_pages::page::block::Block;
+use carom_pages::page::schema::{Group, Side, Sides};
 
 use crate::results::page::chosen::Chosen;
 use crate::results::page::obstacles::around;
 use crate::results::page::surface::Surface;
 use crate::results::stills::Seen;
-use carom_pages::page::block::Block;
-use carom_pages::page::schema::{Group, Side, Sides};
 
 /// Most groups of the mesh in a page.
 const GROUPS: usize = 60;

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 
 use carom_bodies::Body;
 use carom_dynamics::System;
+use carom_pages::form::percent;
+use carom_pages::plot::{quantity, scientific};
 use serde::Serialize;
 
 use crate::maxima::{Maxima, Maximum};
@@ -12,8 +14,6 @@ use crate::results::outlines::size;
 use crate::statistics::Margin;
 use crate::summary::{Contact, Energy, Summary};
 use crate::verdict::Grade;
-use carom_pages::form::percent;
-use carom_pages::plot::{quantity, scientific};
 
 /// A number with what it is about.
 #[derive(Clone, Debug, PartialEq, Serialize)]

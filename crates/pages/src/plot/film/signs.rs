@@ -7,6 +7,7 @@ use super::view::project;
 
 /// Signs of one kind and name beyond which only every second, third, … is drawn.
 const MOST: usize = 200;
+
 /// Length of the arrow of a load in pixels.
 const ARROW: f64 = 22.0;
 
