@@ -10,6 +10,19 @@ use carom_quantities::nearest;
 use crate::error::{Place, Problem};
 use crate::tree::{Item, join};
 
+/// Keys of a table as other programs call them.
+const ELSEWHERE: [(&str, &str); 2] = [("master", "primary"), ("slave", "secondary")];
+
+/// The valid key that an unknown one was probably meant to be.
+pub(crate) fn meant<'a>(
+    key: &str,
+    valid: impl Iterator<Item = &'a str> + Clone,
+) -> Option<&'a str> {
+    let here = ELSEWHERE.iter().find(|(there, _)| *there == key);
+    let same = here.and_then(|(_, here)| valid.clone().find(|valid| valid == here));
+    same.or_else(|| nearest(key, valid))
+}
+
 /// The keys of a table as written, beside the schema of the table.
 pub(crate) struct Keys<'a> {
     root: &'a Value,
@@ -24,7 +37,7 @@ impl<'a> Keys<'a> {
     pub fn new(root: &'a Value, schema: &'a Value, found: &'a BTreeMap<String, Item>) -> Keys<'a> {
         let valid: Vec<&str> = entries(schema, "properties").map(|(key, _)| key).collect();
         let unknown = found.keys().filter(|key| !valid.contains(&key.as_str()));
-        let meant = unknown.filter_map(|key| nearest(key, valid.iter().copied()));
+        let meant = unknown.filter_map(|key| meant(key, valid.iter().copied()));
         Keys {
             meant: meant.collect(),
             root,

@@ -12,18 +12,16 @@ use crate::describe::{
 };
 use crate::error::{Place, Problem};
 use crate::input::Input;
-use crate::keys::{Keys, of};
+use crate::keys::{Keys, meant, of};
 use crate::schema::is_name;
 use crate::tree::{Item, Node, join};
 use carom_quantities::units::{Dimension, UnitError, length_of_unit, parse_quantity};
 
-/// Keys as other programs and other readers of the field call them.
-const ELSEWHERE: [(&str, &str); 5] = [
-    ("gravity", "`load.<name>.acceleration`, without `on`"),
+/// Keys as other programs call them, and where that stands here.
+const ELSEWHERE: [(&str, &str); 3] = [
+    ("gravity", "`load.<name>.acceleration`"),
     ("angular-velocity", "`body.<name>.initial.spin`"),
     ("dt", "`time.step`"),
-    ("master", "`primary`"),
-    ("slave", "`secondary`"),
 ];
 
 /// Longest value that a message shows whole.
@@ -311,8 +309,9 @@ impl<'a> Walker<'a> {
             found: None,
             ..Problem::new(join(path, key), message).unknown(key, known.keys().copied())
         };
+        problem.nearest = meant(key, known.keys().copied()).map(str::to_owned);
         if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| *there == key) {
-            problem = problem.note(format!("it is called {here} here"));
+            problem = problem.note(format!("it is {here}"));
         } else if problem.nearest.is_none() {
             let places = below(self.schema, known, key);
             if (1..=MOST_PLACES).contains(&places.len()) {
