@@ -18,7 +18,7 @@ use crate::interface::InterfaceProblem;
 use crate::operator::Operators;
 
 impl Contacts {
-    /// The same, where no other point has a status of friction.
+    /// Takes what was found for the candidates; all other points have no status of friction.
     pub(crate) fn take_all_found(&mut self, attempt: &mut Attempt) {
         self.slips.fill(Slip::Open);
         self.take_found(attempt);

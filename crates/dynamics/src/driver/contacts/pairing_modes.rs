@@ -8,9 +8,9 @@ use crate::driver::attempt::Attempt;
 use crate::driver::paired::{Paired, PairingMode};
 
 impl Contacts {
-    /// The pairing_modes of the contacts, after the size of the step or its stage has changed.
+    /// The pairing modes of the contacts, after the size of the step or its stage has changed.
     pub(super) fn renew_pairing_modes(&mut self, attempt: &Attempt) {
-        let manner = |number: usize| {
+        let mode = |number: usize| {
             let paired = attempt.configuration(number);
             let contact = &attempt.system.contacts[number];
             let sides = std::iter::once(contact.secondary_body).chain(contact.primary_body);
@@ -20,13 +20,10 @@ impl Contacts {
                 turning: maps.fold(0.0, |most, map| f64::max(most, paired.row(map).x)),
             }
         };
-        let pairing_modes = (0..attempt.system.contacts.len()).map(manner).collect();
+        let pairing_modes = (0..attempt.system.contacts.len()).map(mode).collect();
         self.pairing_modes = pairing_modes;
         self.by_rate = attempt.slides_by_rate();
-        self.turns = self
-            .pairing_modes
-            .iter()
-            .any(|manner| manner.turning != 0.0);
+        self.turns = self.pairing_modes.iter().any(|mode| mode.turning != 0.0);
     }
 }
 
