@@ -6,7 +6,7 @@
 //!
 //! Signs: gap positive when open, gap rate positive when opening, force and pressure positive in compression.
 
-mod certificate;
+pub mod certificate;
 mod contact;
 mod crossing;
 mod initial;
@@ -25,7 +25,6 @@ mod sight;
 
 pub use carom_laws as law;
 pub use carom_laws::{Friction, Law};
-pub use certificate::{Moving, meeting};
 pub use contact::{Contact, Integration, Sliding, Target};
 pub use initial::{Initial, Penetration};
 pub use mortar::{Basis, Mortar};

@@ -5,8 +5,9 @@
 //!
 //! - it is not beside it: it shares no node with a face that has a node of the point;
 //! - it is turned against it: its normal makes more than 120° with that of one of the secondary faces around the point,
-//!   in the current configuration. The normals of two surfaces that touch are opposite; a corner touches with any of its
-//!   faces. Where a surface is smooth the faces further along it are turned the same way, so they are not in view;
+//!   in the current configuration, or the point is a sharp corner and no node around it is nearer to the plane of the face along its normal. The
+//!   normals of two surfaces that touch are opposite; a corner touches with any of its
+//!   faces, or with its tip alone. Where a surface is smooth the faces further along it are turned the same way, so they are not in view;
 //! - the point is not deeper behind it than the *depth*: on a surface that faces itself at most half the thickness of the
 //!   body there, so that the far side, at the whole thickness, is out of view until the body is pressed together to half
 //!   of it.
@@ -40,6 +41,12 @@ const CHUNK: usize = 512;
 /// Cosine of the angle between the normals of a point and of a face up to which the face is in view.
 const OPPOSED: f64 = -0.5;
 
+/// Cosine of the angle between the normals of two faces around a point in the reference configuration from which on it is a sharp corner.
+const SHARP: f64 = 0.5;
+
+/// Part of the length of an edge by which its end may be nearer to a plane than the corner, for rounding.
+const LEVEL: f64 = 1e-9;
+
 /// Distance along a surface around axes or middles up to which a face is near, over the thickness: three, since gaps of points further on
 /// are open until the surface is bent to a radius of its thickness.
 const NEAR: f64 = 3.0;
@@ -58,6 +65,8 @@ pub struct Sight {
     beside: Lists,
     /// Faces of the target across the edges of each.
     across: Across,
+    /// The node of each point at a sharp corner, by system number; of others none.
+    sharp: Vec<Option<u32>>,
     /// Largest penetration of each point, m.
     depth: Vec<f64>,
     /// Gap beyond which nothing is looked for, m.
@@ -138,11 +147,15 @@ impl Sight {
             around,
             beside,
             across: Across::new(target),
+            sharp: Vec::new(),
             reach: if itself { 4.0 * largest } else { f64::INFINITY },
             sides: None,
             round,
             parts: None,
         };
+        if !round {
+            sight.take_corners(points, x);
+        }
         if itself && !round {
             sight.limit_to_thickness(points, target, x);
             sight.take_sides(points, x);
@@ -162,6 +175,7 @@ impl Sight {
         Sight {
             faces: faces.map(|face| face.renumbered(&number)).collect(),
             sides: self.sides.as_ref().map(|sides| sides.renumbered(&number)),
+            sharp: self.sharp.iter().map(|own| own.map(&number)).collect(),
             ..self.clone()
         }
     }
@@ -245,12 +259,24 @@ impl Sight {
         View { sight: self, point }
     }
 
-    /// Decides which points tell a contact that two would tell.
-    fn take_sides(&mut self, points: &[Point], x: &[[f64; 3]]) {
-        let nodes = points.iter().map(Point::as_node);
-        let Some(nodes) = nodes.collect::<Option<Vec<u32>>>() else {
-            return;
+    /// Finds the sharp corners.
+    fn take_corners(&mut self, points: &[Point], x: &[[f64; 3]]) {
+        let normals = self.normals_at_rest(x);
+        let corner = |(k, point): (usize, &Point)| {
+            let around = self.around.of(k);
+            let apart = |&one: &u32| {
+                around.iter().any(|&other| {
+                    let [a, b] = [one, other].map(|face| &normals[face as usize]);
+                    (0..3).map(|i| a[i] * b[i]).sum::<f64>() < SHARP
+                })
+            };
+            point.as_node().filter(|_| around.iter().any(apart))
         };
+        self.sharp = points.iter().enumerate().map(corner).collect();
+    }
+
+    /// The normals of the secondary faces in the reference configuration.
+    fn normals_at_rest(&self, x: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let rest = vec![0.0; 3 * x.len()];
         let places = Places {
             unknowns: &Unknowns::translations(3, x.len()),
@@ -259,7 +285,16 @@ impl Sight {
             u: &rest,
             frames: Frames::default(),
         };
-        let normals: Vec<[f64; 3]> = self.normals(&places).collect();
+        self.normals(&places).collect()
+    }
+
+    /// Decides which points tell a contact that two would tell.
+    fn take_sides(&mut self, points: &[Point], x: &[[f64; 3]]) {
+        let nodes = points.iter().map(Point::as_node);
+        let Some(nodes) = nodes.collect::<Option<Vec<u32>>>() else {
+            return;
+        };
+        let normals = self.normals_at_rest(x);
         let diagonals: Vec<f64> = self
             .faces
             .iter()
@@ -313,9 +348,15 @@ impl View<'_> {
 
     /// Whether a face of the target is in view, its foot being the closest point to the viewer. `normals`: of the
     /// secondary faces, at this configuration.
-    pub(crate) fn shows(&self, item: u32, foot: &Projection, normals: &[[f64; 3]]) -> bool {
+    pub(crate) fn shows(
+        &self,
+        places: &Places,
+        (item, foot): (u32, &Projection),
+        normals: &[[f64; 3]],
+    ) -> bool {
         let faced = self.sight.round
-            || foot.gap >= -self.sight.depth[self.point] && self.opposes(foot, normals);
+            || foot.gap >= -self.sight.depth[self.point]
+                && (self.opposes(foot, normals) || self.points_at(places, foot));
         faced && !self.is_beside(item)
     }
 
@@ -361,7 +402,13 @@ impl View<'_> {
         };
         let around = self.sight.around.of(self.point).iter();
         let around = around.map(|&k| &normals[k as usize]);
-        turned::until_opposed(corners, (around, height), OPPOSED)
+        // a corner points at a face only where a face around it makes more than 90° with that
+        let opposed = if self.corner().is_some() {
+            0.0
+        } else {
+            OPPOSED
+        };
+        turned::until_opposed(corners, (around, height), opposed)
     }
 
     /// The most that nodes may move, m, before the viewer, at `x` (m) and deep behind a face, may be within the depth or before the face; no
@@ -394,6 +441,30 @@ impl View<'_> {
         let depth = self.sight.depth[self.point];
         let faced = self.sight.round || !corners.is_blind(normals, (x, depth));
         !faced || self.is_beside(item)
+    }
+
+    /// Its node, where it is a sharp corner.
+    fn corner(&self) -> Option<u32> {
+        self.sight.sharp.get(self.point).copied().flatten()
+    }
+
+    /// Whether the viewer is a corner with no node around it nearer to the plane of a face: -n is in the cone of the normals of the corner.
+    fn points_at(&self, places: &Places, foot: &Projection) -> bool {
+        let Some(corner) = self.corner() else {
+            return false;
+        };
+        let around = self.sight.around.of(self.point);
+        let tip = places.of(corner);
+        let mut nodes = around
+            .iter()
+            .flat_map(|&face| self.sight.faces[face as usize].corners());
+        nodes.all(|&node| {
+            let x = places.of(node);
+            let way = [0, 1, 2].map(|i| x[i] - tip[i]);
+            let along: f64 = (0..3).map(|i| way[i] * foot.normal[i]).sum();
+            let length = way.iter().map(|w| w * w).sum::<f64>().sqrt();
+            along >= -LEVEL * length
+        })
     }
 
     fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {

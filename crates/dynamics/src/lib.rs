@@ -7,6 +7,7 @@
 mod assembly_energy;
 mod at_rows;
 mod blocks;
+mod certificate;
 mod chatter;
 mod choice;
 mod columns;
@@ -55,6 +56,7 @@ use carom_system as system;
 pub use replicated::Alike;
 
 pub use carom_signals::{Amplitude, Held};
+pub use certificate::{Certificate, Crossing, Told};
 pub use control::{Attempts, Control, Event, adapt};
 pub use costs::{Costs, LONGEST, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};

@@ -165,6 +165,13 @@ pub trait Observer {
     /// # Errors
     /// Whatever keeps it from its work; the run ends.
     fn accepted(&mut self, run: &dyn Stepper) -> Result<(), Error>;
+    /// Called before the first step of a run that goes on, with the state from which it does.
+    ///
+    /// # Errors
+    /// Whatever keeps it from its work; the run ends.
+    fn resumed(&mut self, _run: &dyn Stepper) -> Result<(), Error> {
+        Ok(())
+    }
     /// Called once at the end, after a failed run too. The state of `run` is the last good one.
     ///
     /// # Errors
@@ -232,7 +239,9 @@ pub fn go_on(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let result = steps(run, end, observers, stop);
+    let mut told = observers.iter_mut();
+    let told = told.try_for_each(|observer| observer.resumed(run));
+    let result = told.and_then(|()| steps(run, end, observers, stop));
     finish(run, observers, result)
 }
 

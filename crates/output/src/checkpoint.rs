@@ -17,7 +17,7 @@ use crate::{Error, atomic};
 pub const FOLDER: &str = "checkpoints";
 
 /// First word and version of the format. Raise the version when the content of a state or of what results gather changes.
-const FORMAT: &str = "carom-checkpoint 18";
+const FORMAT: &str = "carom-checkpoint 19";
 
 /// Version of the program: another one may compute other bits.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");

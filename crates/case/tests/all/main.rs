@@ -14,6 +14,7 @@ mod capstan;
 mod changed_cases;
 mod checks;
 mod compare;
+mod crossings;
 mod damaged;
 mod defaults;
 mod events;

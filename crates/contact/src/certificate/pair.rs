@@ -19,7 +19,7 @@
 const PASSES: usize = 200;
 
 /// Distance at which a pair counts as met, over the one that it must keep.
-const NEAR: f64 = 1.1;
+pub(super) const NEAR: f64 = 1.1;
 
 /// Length of a difference below which it has no direction, over the size of what it is a difference of.
 const ROUNDING: f64 = 1e-13;
@@ -76,6 +76,32 @@ pub fn meeting(one: &[Moving], other: &[Moving], distance: f64) -> Option<f64> {
         }
     }
     Some(t)
+}
+
+/// How far two pieces are apart at the end, m, or less.
+pub(super) fn apart_at_end(one: &[Moving], other: &[Moving]) -> f64 {
+    let pair = Pair { one, other };
+    let n = pair.direction(1.0);
+    n.map_or(0.0, |n| pair.separation(n, 1.0))
+}
+
+/// Whether an edge goes through a triangle.
+pub(super) fn pierces(edge: &[Vec3; 3], triangle: &[Vec3; 3]) -> bool {
+    let [a, b, c] = triangle;
+    let volume =
+        |p: &Vec3, q: &Vec3, r: &Vec3, s: &Vec3| dot(&sub(q, p), &cross(&sub(r, p), &sub(s, p)));
+    let ends = [&edge[0], &edge[1]].map(|end| volume(a, b, c, end));
+    let around = [(a, b), (b, c), (c, a)].map(|(from, to)| volume(&edge[0], &edge[1], from, to));
+    let one_sided = around.iter().all(|v| *v > 0.0) || around.iter().all(|v| *v < 0.0);
+    ends[0] * ends[1] < 0.0 && one_sided
+}
+
+/// Whether two edges in the plane cross.
+pub(super) fn crosses(one: &[Vec3; 3], other: &[Vec3; 3]) -> bool {
+    let side = |edge: &[Vec3; 3], p: &Vec3| cross(&sub(&edge[1], &edge[0]), &sub(p, &edge[0]))[2];
+    let apart =
+        |edge: &[Vec3; 3], other: &[Vec3; 3]| side(edge, &other[0]) * side(edge, &other[1]) < 0.0;
+    apart(one, other) && apart(other, one)
 }
 
 struct Pair<'a> {

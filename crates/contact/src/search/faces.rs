@@ -199,7 +199,7 @@ impl FaceTree {
             count += 1;
             let foot = foot_on(places, faces, item, x).0;
             let seen = view.is_none_or(|view| {
-                view.shows(item, &foot, &self.normals)
+                view.shows(places, (item, &foot), &self.normals)
                     && faces_point((stand, &foot), face, false, || places.of_face(face))
                     && !view.is_over_neighbour((item, &foot), stand, (places, faces))
             });
@@ -411,8 +411,13 @@ impl FaceTree {
     }
 
     /// Whether a face is in a view.
-    pub fn shows(&self, view: Option<View>, item: u32, foot: &Projection) -> bool {
-        view.is_none_or(|view| view.shows(item, foot, &self.normals))
+    pub fn shows(
+        &self,
+        places: &Places,
+        view: Option<View>,
+        (item, foot): (u32, &Projection),
+    ) -> bool {
+        view.is_none_or(|view| view.shows(places, (item, foot), &self.normals))
     }
 
     /// Faces whose boxes have a point in common with a box, sorted, into `found`, which is cleared first.

@@ -1,10 +1,10 @@
 //! Pieces of surfaces that move along straight lines, against distances by another way: the least of |Σ λ_i a_i - Σ μ_j b_j| over all faces of
 //! both pieces, at many instants.
 
-use carom_contact::{Moving, meeting};
+use carom_contact::certificate::{Moving, meeting};
 use carom_testing::Random;
 
-type Vec3 = [f64; 3];
+pub(crate) type Vec3 = [f64; 3];
 
 fn sub(a: &Vec3, b: &Vec3) -> Vec3 {
     [0, 1, 2].map(|i| a[i] - b[i])
@@ -16,7 +16,7 @@ fn dot(a: &Vec3, b: &Vec3) -> f64 {
 
 /// Distance of the hulls of some points: for each choice of corners of both the least distance of the flats through them, where its place lies
 /// inside both.
-fn distance(one: &[Vec3], other: &[Vec3]) -> f64 {
+pub(crate) fn distance(one: &[Vec3], other: &[Vec3]) -> f64 {
     let subsets =
         |n: usize| (1..1usize << n).map(move |bits| (0..n).filter(move |k| bits >> k & 1 == 1));
     let mut least = f64::INFINITY;

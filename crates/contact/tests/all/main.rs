@@ -6,6 +6,7 @@
 mod again;
 mod carried;
 mod certificate;
+mod cores;
 mod derivatives;
 mod fixture;
 mod mortar;

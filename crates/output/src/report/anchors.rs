@@ -9,7 +9,12 @@ pub fn section(line: &str) -> &'static str {
         "chatter" | "closed" => "plot-status",
         "rebound" => "plot-energy",
         "sampling" => "plot-load",
-        "penetration" | "passing" | "crossing" | "penetration-between" => "plot-gap",
+        "penetration"
+        | "passing"
+        | "crossing"
+        | "surfaces"
+        | "surfaces-under-force"
+        | "penetration-between" => "plot-gap",
         "step-in-contact" | "force-error" | "not-finite" | "clipped-tension" | "points-closed" => {
             "plot-force"
         }

@@ -82,8 +82,6 @@ pub(crate) struct Last {
     pub(crate) records: Records,
     /// Largest residual of the momentum that contacts give to a body, and largest momentum of one, N s; `None` where nothing moves.
     pub(crate) exchange: Option<[f64; 2]>,
-    /// Pairs of bodies that met with no contact between them.
-    pub(crate) unjoined: Vec<[usize; 2]>,
     /// Mean velocity of the bodies, m/s.
     pub(crate) velocities: Vec<[f64; 3]>,
     /// Whether each contact has a force.

@@ -1,6 +1,9 @@
 //! Contacts whose sides have changed sides without a force, within a step or between the points that carry forces.
 
+use carom_contact::law::Level;
+use carom_dynamics::{Certificate, Crossing};
 use carom_pages::form::Form;
+use carom_pages::plot::quantity;
 
 use crate::results::lines::{Evidence, Finding, worst};
 use crate::verdict::{Bounds, Grade, Line};
@@ -61,4 +64,130 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
         BOUNDS,
         "use a smaller step, in which bodies come closer by less than half the thickness of what they meet",
     ))
+}
+
+/// How deep surfaces go before a certificate tells.
+const DEEP: &str =
+    "deeper than 1/20 of their elements, or half the way to the middle of a shell or a beam";
+
+/// Pairs of bodies, or of a body and the rigid shape that it meets, whose surfaces passed through each other although a contact is between them: no
+/// force told of it.
+pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
+    let Some(certificate) = evidence.crossings.certificate() else {
+        return Finding::Unchecked(
+            "whether surfaces pass through each other: of several ranks none has all nodes"
+                .to_owned(),
+        );
+    };
+    if !certificate.looks(evidence.system) {
+        return Finding::Absent;
+    }
+    let crossed = evidence.crossings.all();
+    let crossed: Vec<&Crossing> = crossed
+        .filter(|crossing| crossing.contact.is_some() && !crossing.held)
+        .collect();
+    let of = match crossed.first() {
+        None => format!(
+            "{} pairs of nodes, edges and faces tested",
+            certificate.told().tested
+        ),
+        Some(first) => format!("the first {}", when_and_where(evidence, certificate, first)),
+    };
+    Finding::Line(Line::new(
+        "surfaces",
+        (
+            &format!(
+                "pairs of bodies whose surfaces went through each other where their contact had no force, {DEEP}; {of}"
+            ),
+            crossed.len() as f64,
+            Form::Count,
+        ),
+        BOUNDS,
+        "use a finer mesh where they meet, and a smaller step; exchange `secondary` and `primary` if the primary side has the smaller faces",
+    ))
+}
+
+/// The same where the contact had a force, but not where it would have kept them apart. From there on nobody looks at the pair.
+pub(super) fn under_force(evidence: &Evidence) -> Finding {
+    let Some(certificate) = evidence.crossings.certificate() else {
+        return Finding::Absent;
+    };
+    let deep: Vec<&Crossing> = evidence
+        .crossings
+        .all()
+        .filter(|crossing| crossing.held)
+        .collect();
+    let Some(first) = deep.first() else {
+        return Finding::Absent;
+    };
+    let law = |crossing: &Crossing| {
+        let contact = crossing
+            .contact
+            .map(|contact| &evidence.system.contacts[contact]);
+        contact.map(|contact| contact.law.get().level())
+    };
+    let first = when_and_where(evidence, certificate, first);
+    if deep
+        .iter()
+        .all(|crossing| law(crossing) == Some(Level::GapAndRate))
+    {
+        return Finding::Unchecked(format!(
+            "whether surfaces pass through each other: their contacts let them go {DEEP}, the first {first}; `penetration` says how deep"
+        ));
+    }
+    Finding::Line(Line::new(
+        "surfaces-under-force",
+        (
+            &format!(
+                "pairs of bodies whose surfaces went into each other beside the forces of their contact, {DEEP}; the first {first}"
+            ),
+            deep.len() as f64,
+            Form::Count,
+        ),
+        Bounds::Look(0.5),
+        "`penetration-between` says how deep; use a finer mesh where they meet, or exchange `secondary` and `primary`",
+    ))
+}
+
+/// Pairs of bodies that nobody looks at.
+pub(super) fn left_open(evidence: &Evidence) -> Finding {
+    let Some(certificate) = evidence.crossings.certificate() else {
+        return Finding::Absent;
+    };
+    let named = |of: &[u32; 2]| certificate.names(evidence.system, *of);
+    let overlapping = certificate.overlapping().iter();
+    let joined = certificate.joined(evidence.system);
+    let mut pairs: Vec<String> = overlapping
+        .map(|of| format!("{}, which meet at the start", named(of)))
+        .chain(joined.map(|of| format!("{}, which links join", named(&of))))
+        .collect();
+    let deleting = evidence.system.bodies.iter();
+    let deleting = deleting.filter(|body| body.has_deletion());
+    pairs.extend(deleting.map(|body| format!("`{}`, whose elements are deleted", body.name())));
+    let Some(first) = pairs.first() else {
+        return Finding::Absent;
+    };
+    let more = match pairs.len() {
+        1 => String::new(),
+        count => format!(", and {} more", count - 1),
+    };
+    Finding::Unchecked(format!(
+        "whether surfaces pass through each other: those of {first}{more}"
+    ))
+}
+
+/// Who met, when and where.
+pub(super) fn when_and_where(
+    evidence: &Evidence,
+    certificate: &Certificate,
+    crossing: &Crossing,
+) -> String {
+    let names = certificate.names(evidence.system, crossing.of);
+    let place = &crossing.place[..evidence.system.dim];
+    let place: Vec<String> = place.iter().map(|x| format!("{x:.4}")).collect();
+    format!(
+        "{names} at {}, at ({}) m",
+        quantity(crossing.time, "s"),
+        place.join(", ")
+    )
 }

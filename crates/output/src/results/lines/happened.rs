@@ -1,7 +1,9 @@
 //! What moved and what met: a run in which nothing happened that was asked about is not good.
 
+use carom_dynamics::Crossing;
 use carom_pages::form::Form;
 
+use crate::results::lines::crossing::when_and_where;
 use crate::results::lines::{Evidence, Finding};
 use crate::verdict::{Bounds, Line};
 
@@ -38,26 +40,28 @@ pub(super) fn closed(evidence: &Evidence) -> Finding {
     ))
 }
 
-/// Bodies that met without a contact between them.
+/// Bodies that met without a contact between them: what they did to each other is not in the result.
 pub(super) fn met(evidence: &Evidence) -> Finding {
+    let Some(certificate) = evidence.crossings.certificate() else {
+        return Finding::Absent;
+    };
     let system = evidence.system;
-    if system.bodies.len() < 2 {
+    if !certificate.looks(system) {
         return Finding::Absent;
     }
-    let met = &evidence.last.unjoined;
+    let met = evidence.crossings.all();
+    let met: Vec<&Crossing> = met.filter(|crossing| crossing.contact.is_none()).collect();
     let quantity = match met.first() {
         None => "pairs of bodies that met with nothing between them".to_owned(),
-        Some([one, other]) => {
-            let [one, other] = [one, other].map(|&body| system.bodies[body].name());
-            format!(
-                "pairs of bodies whose boxes met with no contact between them, the first `{one}` and `{other}`"
-            )
-        }
+        Some(first) => format!(
+            "pairs of bodies that met with no contact between them, the first {}",
+            when_and_where(evidence, certificate, first)
+        ),
     };
     Finding::Line(Line::new(
         "met",
         (&quantity, met.len() as f64, Form::Count),
-        Bounds::Look(0.0),
+        Bounds::Bad(0.5),
         "give them a [contact.<name>], or take [general-contact]",
     ))
 }

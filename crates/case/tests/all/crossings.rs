@@ -1,0 +1,65 @@
+//! Bodies that pass through each other: what they did to each other is not in the result, and the verdict says so.
+
+use carom_case::{Input, build, parse, run};
+use carom_dynamics::Silent;
+use carom_output::{Grade, Summary, Verdict};
+
+/// The summary of a case of the folder `tests/crossings`, with some keys changed.
+fn summary(name: &str, changed: &[String]) -> Summary {
+    let folder = format!(
+        "{}/../../tests/crossings/{name}",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let path = std::path::Path::new(&folder).join("case.toml");
+    let input = Input::read(&path, changed).unwrap();
+    let (case, locator) = parse(&input).unwrap();
+    let built = build(&case, &locator, &input).unwrap();
+    let results = tempfile::tempdir().unwrap();
+    let results = results.path().join("results");
+    let finished = run((&input, &case, &built), results, &mut Silent, &|| false);
+    finished.unwrap().summary
+}
+
+fn found(verdict: &Verdict, line: &str) -> Option<(Grade, f64)> {
+    verdict.line(line).map(|line| (line.grade, line.value))
+}
+
+/// In each of these two meet between their nodes, or in one step, and no contact has a force.
+#[test]
+fn what_passes_between_nodes_is_bad() {
+    for (name, line) in [
+        ("beam-on-solid-ridge", "surfaces"),
+        ("beam-on-sphere-between-nodes", "surfaces"),
+        ("cube-corner", "surfaces"),
+        ("disc-between-nodes", "surfaces"),
+        ("edge-on-edge-solids", "surfaces"),
+        ("tunnel-rigid-sphere", "surfaces"),
+        ("wedge-between-nodes", "surfaces"),
+        ("general-contact-bars", "met"),
+        ("no-contact-declared", "met"),
+    ] {
+        let verdict = summary(name, &[]).verdict;
+        assert_eq!(found(&verdict, line), Some((Grade::Bad, 1.0)), "{name}");
+        assert_eq!(verdict.grade, Grade::Bad, "{name}");
+    }
+}
+
+/// The same until just before they meet: 5 m/s over less than the gap, and nothing to tell.
+#[test]
+fn before_they_meet_nothing_has_crossed() {
+    for (name, end) in [
+        ("beam-on-solid-ridge", 0.003),
+        ("disc-between-nodes", 1e-4),
+        ("edge-on-edge-solids", 0.001),
+        ("no-contact-declared", 0.0098),
+    ] {
+        let verdict = summary(name, &[format!("time.end={end}")]).verdict;
+        for line in ["surfaces", "met"] {
+            let found = found(&verdict, line);
+            assert!(
+                found.is_none_or(|found| found == (Grade::Good, 0.0)),
+                "{name} {line}: {found:?}"
+            );
+        }
+    }
+}
