@@ -132,6 +132,7 @@ fn print(summary: &Summary, folder: &Path) {
     };
     let causes = [
         (time.rejected.closing, "a contact closed"),
+        (time.rejected.passage, "a point passed what it faces"),
         (time.rejected.energy_growth, "energy grew"),
         (time.rejected.failure, "there was no solution"),
     ];

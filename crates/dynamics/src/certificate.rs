@@ -11,7 +11,7 @@ use carom_mesh::Bounds;
 use serde::{Deserialize, Serialize};
 
 use crate::state::State;
-use crate::system::{CoreOf, CoreOwner, System};
+use crate::system::{CoreOf, CoreOwner, Motion, Order, System};
 
 type Vec3 = [f64; 3];
 
@@ -94,7 +94,7 @@ impl Certificate {
         let starting = certificate.told.pairs.iter().map(|pair| pair.of);
         let starting: Vec<[u32; 2]> = starting.collect();
         for of in starting {
-            if certificate.overlaps(system.dim, of) {
+            if certificate.overlaps_at_start(system.dim, of) {
                 certificate.told.overlapping.push(of);
             }
         }
@@ -120,18 +120,22 @@ impl Certificate {
     }
 
     fn new(system: &System, state: &State) -> Certificate {
+        Certificate::at(system, (state.time, &state.motion))
+    }
+
+    fn at(system: &System, (time, motion): (f64, &Motion)) -> Certificate {
         let movers: Vec<Mover> = system.cores().into_iter().map(Mover::new).collect();
         let count = movers.len();
         let mut certificate = Certificate {
             linked: linked(system),
-            time: state.time,
+            time,
             near: f64::INFINITY,
             told: Told::default(),
             room: Room::default(),
             movers,
         };
         for mover in &mut certificate.movers {
-            mover.take(system, state);
+            mover.take(system, (time, motion));
             mover.earlier.clone_from(&mover.nodes);
         }
         if count * count.saturating_sub(1) / 2 > FOLLOWED {
@@ -140,6 +144,37 @@ impl Certificate {
             certificate.near = sizes.sum::<f64>() / count as f64;
         }
         certificate
+    }
+
+    /// Pairs of bodies without a contact that meet within a time `span` (s) if each goes on along its velocity at the start.
+    pub fn ahead(system: &System, span: f64) -> Vec<(String, f64)> {
+        let start = Motion {
+            u: system.initial.displacement.clone(),
+            v: system.initial.velocity.clone(),
+            frames: system.initial.frames.clone(),
+            ..Motion::default()
+        };
+        let mut certificate = Certificate::at(system, (0.0, &start));
+        certificate.choose(system, 0.0);
+        for mover in &mut certificate.movers {
+            let nodes = mover.of.core.nodes().iter();
+            let velocities = nodes.map(|&node| system.of_node(node, &start, Order::Velocity));
+            let moved = mover.nodes.iter().zip(velocities);
+            let moved = moved.map(|(x, v)| [0, 1, 2].map(|i| x[i] + span * v[i]));
+            mover.nodes = moved.collect();
+        }
+        let pairs = std::mem::take(&mut certificate.told.pairs);
+        let mut met = Vec::new();
+        for Pair { of, .. } in pairs {
+            let alone = certificate.contact_of(system, of).is_none();
+            if alone && !certificate.overlaps_at_start(system.dim, of) {
+                let moved = of.map(|number| certificate.movers[number as usize].moved());
+                let found = look(moved, system.dim, &mut certificate.room);
+                let when = found.met.map(|met| met.part * span);
+                met.extend(when.map(|when| (certificate.names(system, of), when)));
+            }
+        }
+        met
     }
 
     /// What was found, and what the certificate goes on from.
@@ -201,7 +236,7 @@ impl Certificate {
         let before = std::mem::replace(&mut self.time, state.time);
         let mut all = Bounds::EMPTY;
         for mover in &mut self.movers {
-            mover.take(system, state);
+            mover.take(system, (state.time, &state.motion));
             all = all.union(&mover.motion);
         }
         if self.near.is_finite() {
@@ -264,13 +299,13 @@ impl Certificate {
         }
     }
 
-    fn overlaps(&mut self, dim: usize, of: [u32; 2]) -> bool {
+    fn overlaps_at_start(&mut self, dim: usize, of: [u32; 2]) -> bool {
         for number in of {
             self.movers[number as usize].place();
         }
         let cores = of.map(|number| {
             let mover = &self.movers[number as usize];
-            (&mover.of.core, &mover.after[..])
+            (&mover.of.core, &mover.before[..])
         });
         overlap(cores, dim, &mut self.room)
     }
@@ -365,19 +400,18 @@ impl Mover {
     }
 
     /// Takes the places in a state.
-    fn take(&mut self, system: &System, state: &State) {
+    fn take(&mut self, system: &System, (time, motion): (f64, &Motion)) {
         std::mem::swap(&mut self.nodes, &mut self.earlier);
         self.nodes.clear();
         match &self.of.owner {
             CoreOwner::Body(_) => {
-                let motion = &state.motion;
-                let places = system.places(state.time, &motion.u, &motion.frames);
+                let places = system.places(time, &motion.u, &motion.frames);
                 let nodes = self.of.core.nodes().iter();
                 self.nodes.extend(nodes.map(|&node| places.of(node)));
             }
             CoreOwner::Shape(contact, places) => {
                 if let Target::Rigid(obstacle) = &system.contacts[*contact].target {
-                    let moved = places.iter().map(|place| obstacle.moved(place, state.time));
+                    let moved = places.iter().map(|place| obstacle.moved(place, time));
                     self.nodes.extend(moved);
                 }
             }

@@ -31,6 +31,8 @@ pub trait Attempts {
     /// Whether the energy that the scheme balances, less the work from outside, exceeds its value at the start of the run by more
     /// than this fraction of the largest energy, at the end of the attempt.
     fn grows(&self, fraction: f64) -> bool;
+    /// Whether a point passed what it faces in the attempt, without a force: a smaller step sees it come behind that.
+    fn passes(&self) -> bool;
     /// Gives back what an attempt that is dropped has changed.
     fn withdraw(&mut self);
     /// Number and time (s) of the state.
@@ -68,6 +70,9 @@ pub fn adapt(
                 let grows = || rules.growth.is_some_and(|fraction| run.grows(fraction));
                 match cut.flatten() {
                     Some(size) => Some((Event::Closing, size)),
+                    None if 0.5 * dt >= rules.smallest && run.passes() => {
+                        Some((Event::Passage, dt))
+                    }
                     None => grows().then_some((Event::Growth, dt)),
                 }
             }
@@ -94,6 +99,8 @@ pub fn adapt(
 pub enum Event {
     /// A contact closes within it.
     Closing,
+    /// A point passed what it faces.
+    Passage,
     /// Energy grew.
     Growth,
     /// It had no solution.
@@ -111,6 +118,8 @@ pub struct Control {
     pub range: [f64; 2],
     /// Attempts dropped because a contact closed within the step.
     pub cut: u64,
+    /// Attempts dropped because a point passed what it faces.
+    pub passed: u64,
     /// Attempts dropped because energy grew.
     pub grown: u64,
     /// Attempts dropped because they had no solution.
@@ -164,6 +173,10 @@ impl Control {
             Event::Closing => {
                 self.cut += 1;
                 return Some(dt);
+            }
+            Event::Passage => {
+                self.passed += 1;
+                0.5 * dt
             }
             Event::Growth => {
                 self.grown += 1;

@@ -164,6 +164,10 @@ impl Attempts for Zones {
         Ok(self.try_size(dt, next)?)
     }
 
+    fn passes(&self) -> bool {
+        self.drivers.iter().any(Attempts::passes)
+    }
+
     fn first_cut(&self, rules: &Adaptive, planned: f64) -> f64 {
         let largest = (rules, self.clock.largest);
         let whole = self.drivers.iter().zip(&self.clock.substeps);

@@ -2,7 +2,7 @@
 
 use carom_contact::law::{Reading, Restitution, Velocity};
 use carom_contact::{Law, Shape, Sliding, Target};
-use carom_dynamics::System;
+use carom_dynamics::{Certificate, System};
 
 use super::advice;
 use super::context::Context;
@@ -66,6 +66,25 @@ fn warn_of_speed(context: &Context, system: &System, problems: &mut Problems) {
     }
 }
 
+/// Warns where bodies fly towards each other and meet in the run, with no contact between them.
+fn warn_of_meetings(context: &Context, system: &System, problems: &mut Problems) {
+    let time = &context.case.time;
+    if time.is_static() {
+        return;
+    }
+    let ahead = Certificate::ahead(system, time.end.0);
+    let Some((names, when)) = ahead.first() else {
+        return;
+    };
+    let more = match ahead.len() {
+        1 => String::new(),
+        count => format!(", and {} more pairs", count - 1),
+    };
+    problems.warn(format!(
+        "{names} meet at {when:.4e} s if they go on as they start{more}, and no contact is between them; give them a [contact.<name>], or take [general-contact]"
+    ));
+}
+
 /// Refuses contacts whose secondary surface has no area: forces per area and shares of it mean nothing there.
 pub(super) fn with_area(context: &Context, system: &System, problems: &mut Problems) {
     for contact in &system.contacts {
@@ -115,6 +134,7 @@ pub(super) fn advise(
         warn_of_springs(system, springs, problems);
     }
     warn_of_speed(context, system, problems);
+    warn_of_meetings(context, system, problems);
     for contact in &system.contacts {
         let name = &contact.name;
         let scheme = context.scheme_of(contact.secondary_body);

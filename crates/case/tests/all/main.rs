@@ -58,3 +58,4 @@ mod symmetries;
 mod verdict;
 mod warnings;
 mod zones;
+mod zoo;

@@ -81,6 +81,13 @@ impl Driver {
             let dt = size * (part as f64 / parts as f64);
             match self.attempt(dt, dt) {
                 Ok(()) if std::mem::take(&mut forced) => self.withdraw_stages(),
+                Ok(()) if level < most && self.passes() => {
+                    let step = taken + 1;
+                    tracing::debug!("step {step}: a point passed what it faces; halved");
+                    self.withdraw_stages();
+                    control.passed += 1;
+                    level += 1;
+                }
                 Ok(()) => {
                     self.report.notices.join(&self.attempt.notices);
                     done += part;
@@ -227,6 +234,12 @@ impl Attempts for Driver {
     fn grows(&self, fraction: f64) -> bool {
         let ledger = &self.attempt.next.ledger;
         ledger.free_energy() > fraction * ledger.largest_energy
+    }
+
+    /// Ranks take the step all the same: each knows of its own points alone.
+    fn passes(&self) -> bool {
+        let all = self.contacts.sums().iter();
+        !self.ranks.are_several() && all.map(|of| of.passed).sum::<u64>() > 0
     }
 
     /// An attempt of one stage leaves nothing behind.

@@ -167,6 +167,10 @@ fn time(time: &Time) -> Vec<String> {
         row("Time reached", quantity(time.end, "s")),
         row("Steps", time.steps),
         some("Attempts rejected, a contact closed", rejected.closing),
+        some(
+            "Attempts rejected, a point passed what it faces",
+            rejected.passage,
+        ),
         some("Attempts rejected, energy grew", rejected.energy_growth),
         some("Attempts rejected, no solution", rejected.failure),
     ];

@@ -254,6 +254,7 @@ fn time(system: &System, last: &Last, zones: Option<&Zones>) -> Time {
         steps: last.step,
         rejected: Rejected {
             closing: last.control.cut,
+            passage: last.control.passed,
             energy_growth: last.control.grown,
             failure: last.control.failed,
         },

@@ -23,6 +23,7 @@ const TIME: &[Key] = &[
     ("end", "s"),
     ("steps", ""),
     ("rejected.closing", ""),
+    ("rejected.passage", ""),
     ("rejected.energy_growth", ""),
     ("rejected.failure", ""),
     ("smallest_step", "s"),

@@ -153,6 +153,8 @@ pub struct Time {
 pub struct Rejected {
     /// A contact closed within the step.
     pub closing: u64,
+    /// Because a point passed what it faces, without a force.
+    pub passage: u64,
     /// Energy grew.
     pub energy_growth: u64,
     /// There was no solution.

@@ -153,7 +153,7 @@ fn differences(
     }
     for (name, grade, value) in &plain.grades {
         // one body has no other to meet
-        if name == "met" && change.meshed == Some(Meshed::Joined) {
+        if ["met", "surfaces"].contains(&name.as_str()) && change.meshed == Some(Meshed::Joined) {
             continue;
         }
         let of = |all: &Answer| {

@@ -88,8 +88,9 @@ pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
         .collect();
     let of = match crossed.first() {
         None => format!(
-            "{} pairs of nodes, edges and faces tested",
-            certificate.told().tested
+            "{} pairs of nodes, edges and faces tested, {} steps cut",
+            certificate.told().tested,
+            evidence.last.control.passed
         ),
         Some(first) => format!("the first {}", when_and_where(evidence, certificate, first)),
     };
@@ -103,7 +104,7 @@ pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
             Form::Count,
         ),
         BOUNDS,
-        "use a finer mesh where they meet, and a smaller step; exchange `secondary` and `primary` if the primary side has the smaller faces",
+        "use a finer mesh where they meet, and a smaller step; take [general-contact] with by = \"materials\", which looks from both sides, or exchange `secondary` and `primary` if the primary side has the smaller faces",
     ))
 }
 
@@ -145,7 +146,7 @@ pub(super) fn under_force(evidence: &Evidence) -> Finding {
             Form::Count,
         ),
         Bounds::Look(0.5),
-        "`penetration-between` says how deep; use a finer mesh where they meet, or exchange `secondary` and `primary`",
+        "`penetration-between` says how deep; use a finer mesh where they meet, [general-contact] with by = \"materials\", which looks from both sides, or exchange `secondary` and `primary`",
     ))
 }
 

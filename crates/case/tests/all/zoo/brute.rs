@@ -1,0 +1,334 @@
+//! Whether bodies went through each other, by trying: between two accepted states nodes move along straight lines, and at instants in between every
+//! piece of one surface is held against every piece of the other.
+//!
+//! It shares nothing with the certificate: the sides are those of the generator, and a crossing is one of surfaces at an instant, which no plane of
+//! separation and no distance from an earlier step tells.
+//!
+//! A body is not its surface here but one a part of the way from it to the middles of the cells. A brick, whose middle is half its size below a
+//! side, has the certificate's core, 1/20 of the size below, at a tenth of that way, a triangle at 0.15, a tetrahedron at a fifth. So bodies that meet at 0.3 of
+//! the way have cores in each other, and since they had not at the start, these have crossed. Bodies that do not even meet at 0.05 of the way, half as
+//! deep at least, have cores that never did.
+
+use super::parts::{Part, Vec3};
+
+/// Part of the way to the middles of the cells at which surfaces that meet are certain to have crossed.
+const DEEP: f64 = 0.3;
+
+/// The same at which those that never meet are certain not to have.
+const SHALLOW: f64 = 0.05;
+
+/// Distance of what meets, m: rounding, of bodies of some 0.1 m.
+const TOUCH: f64 = 1e-9;
+
+/// Most instants that are looked at in a step.
+const INSTANTS: f64 = 64.0;
+
+/// What the states of a run show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Seen {
+    /// The bodies are in each other in the step to the state of this number.
+    Crossed(usize),
+    /// They are apart all the time, or touch.
+    Clear,
+    /// Neither is certain: they are a little way in each other.
+    Between,
+}
+
+/// The surface of a body, or a rigid disc in the plane.
+#[derive(Clone, Debug)]
+pub struct Skin {
+    /// Corners of triangles, lines and points.
+    pieces: Vec<Vec<usize>>,
+    /// Nodes of the cells around each node; none of beams, whose axis is looked at.
+    around: Vec<Vec<Vec<usize>>>,
+    /// Distance from the pieces at which others are certainly deep inside, m.
+    deep: f64,
+    /// Distance from the pieces at which others are certainly no crossing, m.
+    clear: f64,
+    /// Shortest way between two of its nodes, or across its radius, over eight: no way in a step is looked at in longer pieces.
+    fine: f64,
+}
+
+impl Skin {
+    /// That of a part.
+    pub fn of(part: &Part) -> Skin {
+        let mut pieces = Vec::new();
+        for side in part.sides() {
+            match side[..] {
+                [a, b, c, d] => pieces.extend([vec![a, b, c], vec![a, c, d]]),
+                _ => pieces.push(side),
+            }
+        }
+        let has = |node: usize| {
+            let cells = part.corners.iter().filter(|cell| cell.contains(&node));
+            cells.cloned().collect()
+        };
+        let is_beam = part.radius > 0.0;
+        let nodes = match is_beam {
+            true => 0,
+            false => part.nodes.len(),
+        };
+        let pairs = pieces.iter().flat_map(|piece| piece.windows(2));
+        let edges = pairs.map(|pair| distance(&part.nodes[pair[0]], &part.nodes[pair[1]]));
+        // the certificate keeps half the radius, with a tenth of that
+        Skin {
+            around: (0..nodes).map(has).collect(),
+            deep: 0.1 * part.radius,
+            clear: 0.75 * part.radius,
+            fine: match is_beam {
+                true => 0.1 * part.radius,
+                false => edges.fold(f64::INFINITY, f64::min) / 8.0,
+            },
+            pieces,
+        }
+    }
+
+    /// That of a disc, whose only node is its centre.
+    pub fn disc(radius: f64) -> Skin {
+        // the certificate keeps nine tenths of the radius, with a tenth of that
+        Skin {
+            pieces: vec![vec![0]],
+            around: Vec::new(),
+            deep: 0.1 * radius,
+            clear: radius,
+            fine: 0.1 * radius,
+        }
+    }
+
+    /// The pieces a part of the way to the middles of the cells, where the nodes are at these places.
+    fn placed(&self, nodes: &[Vec3], part: f64) -> Vec<Piece> {
+        let inner = |(node, cells): (&Vec3, &Vec<Vec<usize>>)| {
+            let middles: Vec<Vec3> = cells
+                .iter()
+                .map(|cell| mean(cell.iter().map(|&k| nodes[k])))
+                .collect();
+            let middle = mean(middles.into_iter());
+            [0, 1, 2].map(|i| node[i] + part * (middle[i] - node[i]))
+        };
+        let inner: Vec<Vec3> = match self.around.is_empty() {
+            true => nodes.to_vec(),
+            false => nodes.iter().zip(&self.around).map(inner).collect(),
+        };
+        let piece = |corners: &Vec<usize>| Piece::new(corners.iter().map(|&k| inner[k]).collect());
+        self.pieces.iter().map(piece).collect()
+    }
+}
+
+/// What the states show of two bodies; of each state the places of the nodes of both, m.
+pub fn look(skins: [&Skin; 2], states: &[[Vec<Vec3>; 2]]) -> Seen {
+    let mut seen = Seen::Clear;
+    let reach = skins[0].clear + skins[1].clear;
+    for (number, step) in states.windows(2).enumerate() {
+        let [before, after] = [&step[0], &step[1]];
+        let swept = [0, 1].map(|k| Piece::new([&before[k][..], &after[k][..]].concat()));
+        if swept[0].apart(&swept[1]) > reach {
+            continue;
+        }
+        let fine = skins[0].fine.min(skins[1].fine);
+        let count = (motion(before, after) / fine).ceil().clamp(1.0, INSTANTS);
+        for instant in 1..=count as usize {
+            let part = instant as f64 / count;
+            let nodes = [0, 1].map(|k| between(&before[k], &after[k], part));
+            if meet(skins, &nodes, DEEP) {
+                return Seen::Crossed(number + 1);
+            }
+            if seen == Seen::Clear && meet(skins, &nodes, SHALLOW) {
+                seen = Seen::Between;
+            }
+        }
+    }
+    seen
+}
+
+/// Whether bodies are apart where their nodes are at these places.
+pub fn are_apart(skins: [&Skin; 2], nodes: &[Vec<Vec3>; 2]) -> bool {
+    !meet(skins, nodes, 0.0)
+}
+
+/// Whether the bodies meet that are a part of the way to the middles of their cells; those of beams and discs are the thicker the less that is.
+fn meet(skins: [&Skin; 2], nodes: &[Vec<Vec3>; 2], part: f64) -> bool {
+    let radius = |skin: &Skin| match part < DEEP {
+        true => skin.clear,
+        false => skin.deep,
+    };
+    let limit = radius(skins[0]) + radius(skins[1]) + TOUCH;
+    let whole = [0, 1].map(|k| Piece::new(nodes[k].clone()));
+    if whole[0].apart(&whole[1]) > limit {
+        return false;
+    }
+    let near = |k: usize| {
+        let mut pieces = skins[k].placed(&nodes[k], part);
+        pieces.retain(|piece| piece.apart(&whole[1 - k]) <= limit);
+        pieces
+    };
+    let [one, other] = [near(0), near(1)];
+    let mut pairs = one
+        .iter()
+        .flat_map(|a| other.iter().map(move |b| (a, b)))
+        .filter(|(a, b)| a.apart(b) <= limit);
+    pairs.any(|(a, b)| pieces_apart(&a.corners, &b.corners) <= limit)
+}
+
+/// Places with the box around them.
+struct Piece {
+    corners: Vec<Vec3>,
+    min: Vec3,
+    max: Vec3,
+}
+
+impl Piece {
+    fn new(corners: Vec<Vec3>) -> Piece {
+        let (mut min, mut max) = (corners[0], corners[0]);
+        for corner in &corners {
+            for i in 0..3 {
+                min[i] = min[i].min(corner[i]);
+                max[i] = max[i].max(corner[i]);
+            }
+        }
+        Piece { corners, min, max }
+    }
+
+    /// How far the boxes are apart along the axis along which they are farthest, m.
+    fn apart(&self, other: &Piece) -> f64 {
+        let along = |i: usize| (self.min[i] - other.max[i]).max(other.min[i] - self.max[i]);
+        along(0).max(along(1)).max(along(2))
+    }
+}
+
+/// Distance of two pieces of one to three corners, m; zero where an edge of one goes through the other.
+fn pieces_apart(one: &[Vec3], other: &[Vec3]) -> f64 {
+    let mut least = f64::INFINITY;
+    for a in edges(one) {
+        for b in edges(other) {
+            least = least.min(edges_apart(&a, &b));
+        }
+    }
+    for (face, points) in [(one, other), (other, one)] {
+        let [a, b, c] = face else {
+            continue;
+        };
+        for point in points {
+            least = least.min(height_inside([a, b, c], point));
+        }
+        if edges(points).iter().any(|edge| pierces([a, b, c], edge)) {
+            return 0.0;
+        }
+    }
+    least
+}
+
+/// The edges of a piece; of a point one without length.
+fn edges(piece: &[Vec3]) -> Vec<[Vec3; 2]> {
+    match *piece {
+        [a, b, c] => vec![[a, b], [b, c], [c, a]],
+        [a, b] => vec![[a, b]],
+        _ => vec![[piece[0], piece[0]]],
+    }
+}
+
+/// Distance of two edges, m: that of the closest places `p + s d`, `q + t e` with s and t in [0, 1]. In the plane zero where they cross.
+fn edges_apart([p, p_end]: &[Vec3; 2], [q, q_end]: &[Vec3; 2]) -> f64 {
+    let (d, e, r) = (minus(p_end, p), minus(q_end, q), minus(p, q));
+    let (dd, ee, de, dr, er) = (
+        dot(&d, &d),
+        dot(&e, &e),
+        dot(&d, &e),
+        dot(&d, &r),
+        dot(&e, &r),
+    );
+    let part = |over: f64, under: f64| match under > 0.0 {
+        true => (over / under).clamp(0.0, 1.0),
+        false => 0.0,
+    };
+    let square = dd * ee - de * de;
+    // along parallel edges any place is as near, unless it is beside the other edge
+    let first = match square > 1e-12 * dd * ee {
+        true => part(de * er - dr * ee, square),
+        false => 0.0,
+    };
+    let second = part(de * first + er, ee);
+    let first = part(de * second - dr, dd);
+    let at = |s: f64, t: f64| {
+        let between = [0, 1, 2].map(|i| r[i] + s * d[i] - t * e[i]);
+        dot(&between, &between).sqrt()
+    };
+    at(first, part(de * first + er, ee))
+}
+
+/// Height of a place above a triangle, m; infinite where it is not above its inside.
+fn height_inside([a, b, c]: [&Vec3; 3], point: &Vec3) -> f64 {
+    let normal = cross(&minus(b, a), &minus(c, a));
+    let inside =
+        |from: &Vec3, to: &Vec3| dot(&cross(&minus(to, from), &minus(point, from)), &normal) >= 0.0;
+    match inside(a, b) && inside(b, c) && inside(c, a) {
+        true => dot(&minus(point, a), &normal).abs() / dot(&normal, &normal).sqrt(),
+        false => f64::INFINITY,
+    }
+}
+
+/// Whether an edge goes through a triangle: `a + u (b - a) + v (c - a) = p + t d` with u, v ≥ 0, u + v ≤ 1 and t in [0, 1].
+fn pierces([a, b, c]: [&Vec3; 3], [p, end]: &[Vec3; 2]) -> bool {
+    let (u_edge, v_edge, d) = (minus(b, a), minus(c, a), minus(end, p));
+    let across = cross(&d, &v_edge);
+    let determinant = dot(&u_edge, &across);
+    if determinant == 0.0 {
+        return false;
+    }
+    let from = minus(p, a);
+    let u = dot(&from, &across) / determinant;
+    let turned = cross(&from, &u_edge);
+    let v = dot(&d, &turned) / determinant;
+    let t = dot(&v_edge, &turned) / determinant;
+    u >= 0.0 && v >= 0.0 && u + v <= 1.0 && (0.0..=1.0).contains(&t)
+}
+
+/// The most that a node of one body moves relative to one of the other in a step, m, or more.
+fn motion(before: &[Vec<Vec3>; 2], after: &[Vec<Vec3>; 2]) -> f64 {
+    let ways = |k: usize| {
+        let nodes = before[k].iter().zip(&after[k]);
+        nodes.map(|(from, to)| minus(to, from))
+    };
+    let drift = mean(ways(1));
+    let most = |k: usize| {
+        ways(k)
+            .map(|way| distance(&way, &drift))
+            .fold(0.0, f64::max)
+    };
+    most(0) + most(1)
+}
+
+fn between(before: &[Vec3], after: &[Vec3], part: f64) -> Vec<Vec3> {
+    let nodes = before.iter().zip(after);
+    let moved = nodes.map(|(from, to)| [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i])));
+    moved.collect()
+}
+
+fn mean(places: impl Iterator<Item = Vec3>) -> Vec3 {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for place in places {
+        sum = [0, 1, 2].map(|i| sum[i] + place[i]);
+        count += 1.0;
+    }
+    sum.map(|sum: f64| sum / count)
+}
+
+fn minus(a: &Vec3, b: &Vec3) -> Vec3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: &Vec3, b: &Vec3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: &Vec3, b: &Vec3) -> Vec3 {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+fn distance(a: &Vec3, b: &Vec3) -> f64 {
+    let between = minus(a, b);
+    dot(&between, &between).sqrt()
+}
