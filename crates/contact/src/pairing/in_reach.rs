@@ -37,7 +37,7 @@ impl Contact {
             return vec![InReach::default(); due.len()];
         };
         let unknown = Kept::default();
-        search.renew_near(places, faces, (travelled, [0.0; 3]));
+        search.renew_near(places, (faces, &[]), (travelled, [0.0; 3]));
         if self.sight.is_some() {
             let nothing = std::iter::repeat_n(&unknown, due.len());
             search.faces.begin_sight(nothing, (places, faces));
@@ -84,7 +84,7 @@ impl Contact {
         due.par_iter().map(of_point).collect()
     }
 
-    /// The contact with some faces of its target alone, by their numbers, ascending. Points see of these what they see of all.
+    /// The contact with some faces of its target alone, by their numbers, ascending. Points see of these what they see of all. Sharp edges do not count.
     pub fn with_some_faces(&self, kept: &[u32]) -> Contact {
         let Target::Surface(faces) = &self.target else {
             return self.clone();
@@ -93,6 +93,7 @@ impl Contact {
         let sight = self.sight.as_ref().map(|sight| sight.with_some_faces(kept));
         Contact {
             target: Target::Surface(some.collect()),
+            edges: None,
             sight,
             ..self.clone()
         }
