@@ -130,6 +130,24 @@ impl Edges {
         }
     }
 
+    /// Those that have both faces among some of the target, which are then numbered by their places; none if there are none. `kept`: the faces,
+    /// ascending.
+    pub(crate) fn with_some_faces(&self, kept: &[u32]) -> Option<Edges> {
+        let place = |face: u32| kept.binary_search(&face).ok().map(|place| place as u32);
+        let all = self.lines.iter().zip(&self.sides);
+        let some = all.filter_map(|(line, side)| {
+            let [one, other] = side.faces.map(place);
+            let faces = [one?, other?];
+            Some((*line, Side { faces, ..*side }))
+        });
+        let (lines, sides): (Vec<Face>, Vec<Side>) = some.unzip();
+        (!lines.is_empty()).then_some(Edges {
+            lines,
+            sides,
+            ..*self
+        })
+    }
+
     /// Whether an edge shares a node with that of a point, or is beside it on the surface, or of a part that it does not touch.
     fn is_beside(&self, item: u32, (ends, view): (&[u32; 2], Option<View>)) -> bool {
         let (line, side) = (&self.lines[item as usize], &self.sides[item as usize]);
@@ -242,6 +260,58 @@ impl Contact {
         };
         let found = tree.nearest_within((&middle, half), within, measure);
         found.map(|(_, distance)| distance)
+    }
+
+    /// Faces of the edges of the target that the edge of a point may touch within the `limit` (m) while nodes move by less than `motion` (m),
+    /// ascending, each with how far they may move before, m. They are all that decides which of two points tells.
+    pub(crate) fn edges_in_reach(
+        &self,
+        target: (&Places, &FaceTree),
+        point: usize,
+        [limit, motion]: [f64; 2],
+    ) -> Vec<(u32, f64)> {
+        let Some(edges) = &self.edges else {
+            return Vec::new();
+        };
+        let mut found = Vec::new();
+        for (item, rest) in self.lines_in_reach(target, point, [limit, motion]) {
+            found.push((item, rest));
+            // whether the point of that edge tells depends on what it faces
+            if let Some(other) = edges.sides[item as usize].point {
+                let further = self.lines_in_reach(target, other as usize, [limit, motion]);
+                found.extend(further.into_iter().map(|(item, own)| (item, own.max(rest))));
+            }
+        }
+        let of_edge = |(item, rest): (u32, f64)| {
+            let faces = edges.sides[item as usize].faces;
+            faces.map(|face| (face, rest))
+        };
+        let mut faces: Vec<(u32, f64)> = found.into_iter().flat_map(of_edge).collect();
+        faces.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        faces.dedup_by_key(|(face, _)| *face);
+        faces
+    }
+
+    /// Edges of the target that the edge of a point may touch within the `limit` (m) while nodes move by less than `motion` (m), each with how
+    /// far they may move before, m.
+    fn lines_in_reach(
+        &self,
+        (places, tree): (&Places, &FaceTree),
+        point: usize,
+        [limit, motion]: [f64; 2],
+    ) -> Vec<(u32, f64)> {
+        let (Some(edges), Some(own)) = (&self.edges, self.points[point].edge()) else {
+            return Vec::new();
+        };
+        let (line, view) = (Line::new(places, own), self.view(point));
+        let (middle, half) = line.middle();
+        let near = tree.near(&middle, half + limit + 2.0 * motion).into_iter();
+        let others = near.filter(|&item| !edges.is_beside(item, (&own[0], view)));
+        let with_rest = others.map(|item| {
+            let apart = between(&line.ends, &edges.line(places, item).ends).distance;
+            (item, (0.5 * (apart - limit)).max(0.0))
+        });
+        with_rest.filter(|(_, rest)| *rest < motion).collect()
     }
 
     /// The first of the edges of the target that meet the edge of a point and are nearest to it, and where.

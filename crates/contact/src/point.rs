@@ -92,6 +92,11 @@ impl Point {
         point
     }
 
+    /// Whether it is the point of a sharp edge of a solid ([`Point::at_edge`]).
+    pub fn is_at_edge(&self) -> bool {
+        self.edge().is_some()
+    }
+
     /// Of a point of a sharp edge of a solid ([`Point::at_edge`]) the ends of the edge, and a further node of each of its faces.
     pub(crate) fn edge(&self) -> Option<[[u32; 2]; 2]> {
         let [a, b, c, d, ..] = self.nodes;

@@ -318,6 +318,17 @@ impl FaceTree {
         tree.closest(&there, within, self.moved + beside, measure)
     }
 
+    /// Items whose boxes are within a distance (m) of a place.
+    pub fn near(&self, x: &[f64; 3], within: f64) -> Vec<u32> {
+        let mut near = Vec::new();
+        if let Some(tree) = &self.tree {
+            let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
+            let around = within + self.moved + tree.rounding(&there);
+            tree.near(&there, around, &mut near);
+        }
+        near
+    }
+
     /// The most that nodes may move, m, before a face that is beyond the `limit` (m) of a place, or out of its view, may come into
     /// view within the limit; at most a part of the `farthest` limit (m).
     pub fn rest_of(
