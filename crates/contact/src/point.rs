@@ -97,6 +97,14 @@ impl Point {
         self.edge().is_some()
     }
 
+    /// Of a point of a sharp edge of a solid a further node of each of its two faces, which decide what it faces; none of others.
+    pub fn beside_edge(&self) -> &[u32] {
+        match self.is_at_edge() {
+            true => &self.nodes[self.count..self.count + self.beside],
+            false => &[],
+        }
+    }
+
     /// Of a point of a sharp edge of a solid ([`Point::at_edge`]) the ends of the edge, and a further node of each of its faces.
     pub(crate) fn edge(&self) -> Option<[[u32; 2]; 2]> {
         let [a, b, c, d, ..] = self.nodes;
