@@ -165,6 +165,7 @@ fn scene(side: u32) -> (Vec<[f64; 3]>, Contact) {
         mortar: None,
         target: Target::Surface(faces),
         sight: None,
+        edges: None,
         offsets: Vec::new(),
         near_only: false,
     };

@@ -4,7 +4,7 @@ use carom_mesh::{Face, Projection, QUADS, Rim};
 
 use crate::crossing::Opposite;
 use crate::sight::View;
-use crate::{Basis, Held, Law, Mortar, Obstacle, Places, Point, Search, Shape, Sight};
+use crate::{Basis, Edges, Held, Law, Mortar, Obstacle, Places, Point, Search, Shape, Sight};
 
 /// What the secondary points face.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +61,9 @@ pub struct Contact {
     pub mortar: Option<Mortar>,
     /// What they face.
     pub target: Target,
+    /// Sharp edges of the target that points of edges of the secondary surface face ([`Point::at_edge`](crate::Point::at_edge)); none where edges
+    /// do not count.
+    pub edges: Option<Edges>,
     /// What they see of it; `None` for everything: each point then faces the closest face.
     pub sight: Option<Sight>,
     /// What is added to the gap of each point, m: initial penetrations that are to count as contact without any
@@ -98,7 +101,7 @@ impl Contact {
 
     /// Calls `visit` with each point and what is opposite to it on a surface.
     pub(crate) fn each_opposite<'a>(
-        &self,
+        &'a self,
         (places, faces): (&Places, &'a [Face]),
         search: &mut Search,
         mut visit: impl FnMut(usize, Option<Opposite<'a>>),
@@ -107,7 +110,11 @@ impl Contact {
             if k % QUADS == 0 && self.sight.is_none() {
                 search.look_ahead(places, faces, &self.points[k..]);
             }
-            visit(k, search.opposite(places, faces, (point, self.view(k))));
+            let found = match point.edge() {
+                Some(_) => self.opposite_edge((places, &search.lines), k, f64::INFINITY),
+                None => search.opposite(places, faces, (point, self.view(k))),
+            };
+            visit(k, found);
         }
     }
 
@@ -116,10 +123,13 @@ impl Contact {
         if let Target::Surface(faces) = &self.target {
             search.renew(places, faces, self.sight.as_ref());
         }
+        if let Some(edges) = &self.edges {
+            search.lines.renew(places, edges.lines());
+        }
     }
 
     /// The contact with other faces of the target, by system number; of a surface that faces itself points see what is around them of these
-    /// faces too. `x`: reference coordinates by system number, m.
+    /// faces too. Edges do not count there. `x`: reference coordinates by system number, m.
     pub fn with_faces(&self, mut faces: Vec<Face>, x: &[[f64; 3]]) -> Contact {
         Rim::mark(&mut faces, |node| x[node as usize], |node| node);
         let sight = match self.faces_itself() {
@@ -128,6 +138,7 @@ impl Contact {
         };
         Contact {
             target: Target::Surface(faces),
+            edges: None,
             sight,
             ..self.clone()
         }
@@ -151,6 +162,7 @@ impl Contact {
                 Target::Surface(faces) => Target::Surface(of_all(faces)),
                 Target::Rigid(obstacle) => Target::Rigid(obstacle.clone()),
             },
+            edges: self.edges.as_ref().map(|edges| edges.renumbered(&number)),
             sight: self.sight.as_ref().map(|sight| sight.renumbered(&number)),
             offsets: self.offsets.clone(),
             ..*self

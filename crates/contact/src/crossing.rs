@@ -16,9 +16,9 @@ use crate::sight::View;
 use crate::{Places, Point};
 
 /// Square of the sine of the angle of two lines up to which they run along each other, 6°: nodes hold sharp edges of shells that do.
-const ALONG: f64 = 1e-2;
+pub(crate) const ALONG: f64 = 1e-2;
 /// Distance from the ends of a line, in its reference coordinate, within which nodes hold what crosses there.
-const AT_END: f64 = 1e-3;
+pub(crate) const AT_END: f64 = 1e-3;
 /// How much nearer than its ends a place of a line must be, as a part of the sum of the radii.
 const NEARER: f64 = 1e-3;
 
@@ -105,17 +105,17 @@ impl FaceTree {
 }
 
 /// The nearest places of two segments.
-struct Nearest {
+pub(crate) struct Nearest {
     /// Their reference coordinates.
-    xi: [f64; 2],
+    pub xi: [f64; 2],
     /// m.
-    distance: f64,
+    pub distance: f64,
     /// Square of the sine of the angle of both.
-    angle: f64,
+    pub angle: f64,
 }
 
 /// Where two segments are nearest to each other. Of parallel segments some place of the nearest.
-fn between(one: &[[f64; 3]; 2], other: &[[f64; 3]; 2]) -> Nearest {
+pub(crate) fn between(one: &[[f64; 3]; 2], other: &[[f64; 3]; 2]) -> Nearest {
     let sub = |a: &[f64; 3], b: &[f64; 3]| [0, 1, 2].map(|i| a[i] - b[i]);
     let dot = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
     let (d, e, r) = (

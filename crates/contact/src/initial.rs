@@ -156,6 +156,7 @@ mod tests {
             mortar: None,
             target: Target::Rigid(floor.into()),
             sight: None,
+            edges: None,
             offsets: Vec::new(),
             near_only: false,
         };

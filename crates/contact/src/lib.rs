@@ -9,6 +9,7 @@
 pub mod certificate;
 mod contact;
 mod crossing;
+mod edges;
 mod initial;
 mod mortar;
 mod obstacle;
@@ -26,6 +27,7 @@ mod sight;
 pub use carom_laws as law;
 pub use carom_laws::{Friction, Law};
 pub use contact::{Contact, Integration, Sliding, Target};
+pub use edges::Edges;
 pub use initial::{Initial, Penetration};
 pub use mortar::{Basis, Mortar};
 pub use obstacle::{

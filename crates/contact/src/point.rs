@@ -1,14 +1,15 @@
 //! The points at which a contact is looked at: nodes of the secondary surface, or Gauss points of its faces.
 
 use carom_elements::{MAX_FACE_NODES, map};
-use carom_mesh::Face;
+use carom_mesh::{Face, SharpEdge};
 
 use crate::Places;
 
 /// A point of the secondary surface that carries a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Nodes of its face, by system number; the first `count` are used. For a node, itself; behind it `beside` others of its faces.
+    /// Nodes of its face, by system number; the first `count` are used. For a node, itself; behind it `beside` others of its faces. Behind the
+    /// ends of a sharp edge one further node of each of its two faces.
     nodes: [u32; MAX_FACE_NODES],
     beside: usize,
     /// Values of their shape functions in the point.
@@ -80,6 +81,34 @@ impl Point {
             crosses: true,
             ..Point::on_face(axis, &[0.0; 3])
         }
+    }
+
+    /// The place of a sharp edge of a solid that is nearest to another one which it crosses. `area` in m²; it has no share in the surface, whose
+    /// nodes stand for all of it.
+    pub fn at_edge(edge: &SharpEdge, area: f64) -> Point {
+        let mut point = Point::crossing(&edge.line, area);
+        point.nodes[2..4].copy_from_slice(&edge.beside);
+        point.beside = 2;
+        point
+    }
+
+    /// Whether it is the point of a sharp edge of a solid ([`Point::at_edge`]).
+    pub fn is_at_edge(&self) -> bool {
+        self.edge().is_some()
+    }
+
+    /// Of a point of a sharp edge of a solid a further node of each of its two faces, which decide what it faces; none of others.
+    pub fn beside_edge(&self) -> &[u32] {
+        match self.is_at_edge() {
+            true => &self.nodes[self.count..self.count + self.beside],
+            false => &[],
+        }
+    }
+
+    /// Of a point of a sharp edge of a solid ([`Point::at_edge`]) the ends of the edge, and a further node of each of its faces.
+    pub(crate) fn edge(&self) -> Option<[[u32; 2]; 2]> {
+        let [a, b, c, d, ..] = self.nodes;
+        (self.crosses && self.beside == 2).then_some([[a, b], [c, d]])
     }
 
     /// The point with its nodes in other numbers.

@@ -43,6 +43,7 @@ impl Contact {
             points,
             mortar: None,
             target: Target::Surface(target),
+            edges: None,
             sight: Some(match parts {
                 Some(parts) => sight.with_parts(&Parts {
                     secondary: parts.primary.clone(),

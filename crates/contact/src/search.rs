@@ -34,6 +34,8 @@ mod way;
 pub struct Search {
     /// The faces and their boxes.
     pub(crate) faces: FaceTree,
+    /// Sharp edges of the target and their boxes ([`Edges`](crate::Edges)).
+    pub(crate) lines: FaceTree,
     /// The memory of each query since the renewal, in their order.
     kept: Vec<Kept>,
     next: usize,
@@ -72,21 +74,28 @@ impl Search {
     }
 
     /// Brings the search to a configuration whose motion since another one is bounded by the difference of what points at rest have
-    /// `travelled`, over the drift.
+    /// `travelled`, over the drift. `lines`: sharp edges of the target, none where edges do not count.
     pub(crate) fn renew_near(
         &mut self,
         places: &Places,
-        faces: &[Face],
+        (faces, lines): (&[Face], &[Face]),
         (travelled, shift): (f64, [f64; 3]),
     ) {
         if let Some((before, from)) = self.rested {
-            let shift = [0, 1, 2].map(|i| shift[i] - from[i]);
-            if self.faces.has_moved(faces.len(), travelled - before, shift) {
+            let (moved, shift) = (travelled - before, [0, 1, 2].map(|i| shift[i] - from[i]));
+            let mut serves = self.faces.has_moved(faces.len(), moved, shift);
+            if !lines.is_empty() {
+                serves &= self.lines.has_moved(lines.len(), moved, shift);
+            }
+            if serves {
                 return;
             }
         }
         self.rested = Some((travelled, shift));
         self.faces.take_boxes(places, faces);
+        if !lines.is_empty() {
+            self.lines.take_boxes(places, lines);
+        }
     }
 
     /// Forgets when points that are far are looked at again.
@@ -120,7 +129,7 @@ impl Search {
     pub fn bytes(&self) -> usize {
         let lists = self.kept.iter().map(Kept::bytes);
         let groups = self.groups.iter().map(Group::bytes);
-        self.faces.bytes() + lists.sum::<usize>() + groups.sum::<usize>()
+        self.faces.bytes() + self.lines.bytes() + lists.sum::<usize>() + groups.sum::<usize>()
     }
 
     /// Projections on faces since the last renewal: what the search cost.

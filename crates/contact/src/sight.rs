@@ -141,7 +141,11 @@ impl Sight {
         let largest = largest.fold(0.0, f64::max);
         let mut sight = Sight {
             depth: (0..points.len())
-                .map(|k| depth.unwrap_or_else(|| 0.5 * size(k)))
+                .map(|k| match points[k].edge() {
+                    // a point of an edge sees no faces
+                    Some(_) => 0.0,
+                    None => depth.unwrap_or_else(|| 0.5 * size(k)),
+                })
                 .collect(),
             faces: secondary.to_vec(),
             around,
@@ -290,7 +294,9 @@ impl Sight {
 
     /// Decides which points tell a contact that two would tell.
     fn take_sides(&mut self, points: &[Point], x: &[[f64; 3]]) {
-        let nodes = points.iter().map(Point::as_node);
+        // points of edges follow the nodes, and no other point yields to them
+        let nodes = points.iter().filter(|point| point.edge().is_none());
+        let nodes = nodes.map(Point::as_node);
         let Some(nodes) = nodes.collect::<Option<Vec<u32>>>() else {
             return;
         };

@@ -7,7 +7,7 @@ use carom_elements::Kind;
 use crate::{ElementId, Error, Face, Group, Mesh, Rim, Surface, face_nodes};
 
 /// Cosine of the angle between two faces of a shell beyond which the edge between them is sharp: 40°, as for its directors.
-const FOLD: f64 = 0.766;
+pub(crate) const FOLD: f64 = 0.766;
 
 impl Surface {
     /// The surface around cells at a distance: around the lines or plane cells of a group, or around its points, which may
@@ -127,7 +127,7 @@ impl Surface {
 }
 
 /// Unit normal of a face of three or four nodes.
-fn normal(mesh: &Mesh, face: &Face) -> [f64; 3] {
+pub(crate) fn normal(mesh: &Mesh, face: &Face) -> [f64; 3] {
     let x: Vec<[f64; 3]> = face
         .corners()
         .iter()

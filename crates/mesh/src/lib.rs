@@ -25,6 +25,7 @@ pub mod refine;
 mod rim;
 mod rims;
 pub mod search;
+mod sharp;
 pub mod surface;
 mod vector;
 
@@ -48,4 +49,5 @@ pub use refine::{is_refinable, refine};
 pub use rim::{Rim, is_on};
 pub use rims::across;
 pub use search::BoxTree;
+pub use sharp::SharpEdge;
 pub use surface::Surface;

@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_bodies::Kinematics;
-use carom_contact::{Contact, Integration, Mortar, Point, Sight, Target};
-use carom_mesh::{ElementId, Face, Mesh, Rim, Surface};
+use carom_bodies::{Kinematics, height};
+use carom_contact::{Contact, Edges, Integration, Mortar, Point, Sight, Sliding, Target};
+use carom_mesh::{ElementId, Face, Mesh, Rim, SharpEdge, Surface};
 
 use crate::model::{Model, ModelContact, ModelTarget};
 
@@ -127,6 +127,7 @@ pub(crate) fn numbered(
         faces.map(|face| renumbered(face, number)).collect()
     };
     let lines = crossed(contact, model);
+    let sharp = sharp_edges(contact, &model.mesh);
     let (points, mortar) = match contact.integration {
         Integration::Node => {
             let mut points = nodes(surface, &model.mesh, number, factor);
@@ -138,7 +139,10 @@ pub(crate) fn numbered(
                 let own = lines_of(surface, &model.mesh).into_iter();
                 points.extend(own.map(|line| crossing(&renumbered(&line, number))));
             }
-            (shared(points), None)
+            let mut points = shared(points);
+            let own = sharp.iter().flat_map(|sharp| &sharp.secondary);
+            points.extend(own.map(|edge| at_edge(edge, &model.mesh, number)));
+            (points, None)
         }
         Integration::Points | Integration::Weak { .. } => {
             (Point::of_faces(&faces(surface), x, factor), None)
@@ -158,6 +162,12 @@ pub(crate) fn numbered(
             Target::Surface(faces)
         }
     };
+    let edges = sharp.and_then(|sharp| {
+        let edges = sharp.primary.iter();
+        let edges = edges.map(|edge| edge.renumbered(|node| number[node as usize]));
+        let edges: Vec<SharpEdge> = edges.collect();
+        Edges::new(&edges, &points, x, sharp.depth)
+    });
     let sight = match &target {
         Target::Surface(primary) => {
             let secondary = faces(surface);
@@ -179,6 +189,7 @@ pub(crate) fn numbered(
         points,
         mortar,
         target,
+        edges,
         sight,
         offsets: Vec::new(),
         near_only: contact.near_only,
@@ -198,6 +209,54 @@ fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
         true => lines_of(other, &model.mesh),
         false => Vec::new(),
     }
+}
+
+/// Part of the size of the elements at the edges beyond which edges of solids that are behind each other do not touch.
+const DEPTH: f64 = 0.25;
+
+/// Sharp edges of the solids of both sides of a contact, by the numbers of the mesh.
+struct SharpEdges {
+    secondary: Vec<SharpEdge>,
+    primary: Vec<SharpEdge>,
+    /// Penetration beyond which they do not touch, m.
+    depth: f64,
+}
+
+/// The sharp edges of a contact that asks for them; none where a side has none.
+fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
+    let ModelTarget::Surface(primary) = &contact.primary else {
+        return None;
+    };
+    let at_nodes = contact.integration == Integration::Node;
+    let slides = contact.sliding == Sliding::Finite;
+    if !(contact.edges && mesh.dim == 3 && at_nodes && slides) {
+        return None;
+    }
+    let surfaces = [&contact.secondary, primary];
+    let [secondary, primary] = surfaces.map(|surface| surface.sharp_edges_of_solids(mesh));
+    if secondary.is_empty() || primary.is_empty() {
+        return None;
+    }
+    let least = |(surface, edges): (&Surface, &Vec<SharpEdge>)| {
+        let faces = edges.iter().flat_map(|edge| edge.faces);
+        let faces = faces.map(|face| &surface.faces[face as usize]);
+        let heights = faces.map(|face| height(mesh, face.parent, face.kind, face.corners()));
+        heights.fold(f64::INFINITY, f64::min)
+    };
+    let sides = surfaces.into_iter().zip([&secondary, &primary]);
+    let least = sides.map(least).fold(f64::INFINITY, f64::min);
+    Some(SharpEdges {
+        secondary,
+        primary,
+        depth: DEPTH * least,
+    })
+}
+
+/// The point of a sharp edge; it stands for a square of half its length.
+fn at_edge(edge: &SharpEdge, mesh: &Mesh, number: &[u32]) -> Point {
+    let half = 0.5 * edge.length(&mesh.nodes);
+    let edge = edge.renumbered(|node| number[node as usize]);
+    Point::at_edge(&edge, half * half)
 }
 
 /// Axes of beams and sharp edges of shells.

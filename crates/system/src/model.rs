@@ -377,6 +377,8 @@ pub struct ModelContact {
     pub depth: Option<f64>,
     /// Whether gaps of points that are far from what they face are not looked for, in implicit steps as in explicit ones.
     pub near_only: bool,
+    /// Whether sharp edges of solids touch that cross between their nodes: in space, at nodes, with finite sliding.
+    pub edges: bool,
     /// The bodies of the faces where a side has several, and which of them do not touch each other.
     pub parts: Option<Parts>,
     /// Duration of a flight that ends an impact, s; `None`: by waves and steps.
@@ -405,6 +407,7 @@ impl ModelContact {
             initial: Initial::Keep,
             depth: None,
             near_only: false,
+            edges: false,
             parts: None,
             moment_about: None,
             merge_within: None,

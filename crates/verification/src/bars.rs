@@ -259,6 +259,7 @@ impl Run {
                 depth: None,
                 moment_about: None,
                 near_only: false,
+                edges: false,
                 merge_within: None,
                 ..contact(secondary, primary, self.law)
             }],

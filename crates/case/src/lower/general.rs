@@ -223,6 +223,10 @@ fn between(
         friction: friction.unwrap_or_default(),
         initial: Initial::Touch,
         near_only: !deletes,
+        edges: given.by == GeneralBy::Materials
+            && scope.mesh.dim == 3
+            && !deletes
+            && [one, other].iter().all(|part| part.is_solid()),
         // surfaces around axes and middles have none, one that faces itself has its own
         depth: match round {
             true => None,

@@ -73,6 +73,11 @@ impl<'a> Part<'a> {
         matches!(self.body.spec.kinematics, Kinematics::Beam(_))
     }
 
+    /// Whether it is the outer side of cells that fill the space.
+    pub(super) fn is_solid(&self) -> bool {
+        self.surface.faces.iter().all(|face| face.radius.is_none())
+    }
+
     /// Whether one contact takes the bodies of both.
     fn goes_with(&self, other: &Part, plan: &Plan) -> bool {
         let [one, two] = [self, other].map(|part| &part.body.spec);

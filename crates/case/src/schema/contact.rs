@@ -92,7 +92,8 @@ pub enum GeneralBy {
     Bodies,
     /// Each two materials, `all-m-n` of the materials `m` and `n`, `all-m` of all bodies of one: one search over all their sides, memory in
     /// proportion to their faces. What two bodies do to each other is not told apart. Bodies of one material have contacts of their own
-    /// where their sections, their zones or their rotations differ, and where cells are deleted. Shells of one contact do not meet edge on edge.
+    /// where their sections, their zones or their rotations differ, and where cells are deleted. Sharp edges of solids touch that cross between their
+    /// nodes. Shells of one contact do not meet edge on edge.
     Materials,
 }
 

@@ -43,6 +43,25 @@ fn what_passes_between_nodes_is_bad() {
     }
 }
 
+/// A general contact by materials tells of sharp edges too. The upper bar of two alike is stopped by half of its velocity: both go on together.
+#[test]
+fn edges_between_nodes_touch_in_a_contact_of_materials() {
+    const STEP: f64 = 5e-6;
+    let changed = [
+        "general-contact.by=\"materials\"".to_owned(),
+        format!("time.step={STEP}"),
+    ];
+    let summary = summary("edge-on-edge-solids", &changed);
+    // the lower edge of one at z = 0.0371447 m, the upper edge of the other at 0.0353553 m, 5 m/s
+    let meet = (0.037_144_660_940_672_62 - 0.035_355_339_059_327_376) / 5.0;
+    let first = summary.contacts["all-m"].first_closing.unwrap();
+    // the step in which the gap closes, or the next one
+    assert!((first - meet).abs() <= STEP, "{first} {meet}");
+    let found = found(&summary.verdict, "surfaces");
+    assert!(found.is_none_or(|(_, value)| value <= 0.0), "{found:?}");
+    assert!(summary.momentum.relative_residual < 1e-10);
+}
+
 /// The same until just before they meet: 5 m/s over less than the gap, and nothing to tell.
 #[test]
 fn before_they_meet_nothing_has_crossed() {

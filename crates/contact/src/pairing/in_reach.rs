@@ -5,10 +5,10 @@ use std::f64::consts::SQRT_2;
 use carom_mesh::Face;
 use rayon::prelude::*;
 
-use crate::search::faces::{Question, Scratch};
+use crate::search::faces::{FaceTree, Question, Scratch};
 use crate::search::kept::Kept;
 use crate::sight::View;
-use crate::{Contact, Places, Search, Target};
+use crate::{Contact, Edges, Places, Search, Target};
 
 /// Distance up to which clearances are told, over the largest at which anything is looked at: further, a look costs more than it saves.
 const FARTHER: f64 = 2.0;
@@ -37,7 +37,8 @@ impl Contact {
             return vec![InReach::default(); due.len()];
         };
         let unknown = Kept::default();
-        search.renew_near(places, faces, (travelled, [0.0; 3]));
+        let lines = self.edges.as_ref().map_or(&[][..], Edges::lines);
+        search.renew_near(places, (faces, lines), (travelled, [0.0; 3]));
         if self.sight.is_some() {
             let nothing = std::iter::repeat_n(&unknown, due.len());
             search.faces.begin_sight(nothing, (places, faces));
@@ -47,9 +48,12 @@ impl Contact {
                 search.faces.see(view, places);
             }
         }
-        let tree = &search.faces;
+        let (tree, lines) = (&search.faces, &search.lines);
         let of_point = |&point: &u32| {
             let k = point as usize;
+            if self.points[k].is_at_edge() {
+                return self.edge_in_reach((places, lines), k, [reach, most, motion]);
+            }
             let (x, view) = (self.points[k].place(places), self.view(k));
             // whoever is outside gets no deeper than both sides move
             let mut limit = self.limit(k, reach).max(2.0 * SQRT_2 * motion);
@@ -84,7 +88,29 @@ impl Contact {
         due.par_iter().map(of_point).collect()
     }
 
-    /// The contact with some faces of its target alone, by their numbers, ascending. Points see of these what they see of all.
+    /// What the point of a sharp edge may touch; distances as in [`Contact::in_reach`].
+    fn edge_in_reach(
+        &self,
+        target: (&Places, &FaceTree),
+        point: usize,
+        [reach, most, motion]: [f64; 3],
+    ) -> InReach {
+        let depth = self.edges.as_ref().map_or(0.0, Edges::depth);
+        let limit = self.limit(point, reach).max(depth);
+        let faces = self.edges_in_reach(target, point, [limit, motion]);
+        let clearance = || {
+            let farthest = limit + FARTHER * self.limit(point, most);
+            let apart = self.distance_of_edges(target, point, farthest);
+            (0.5 * (apart.unwrap_or(farthest) - limit)).max(motion)
+        };
+        InReach {
+            clearance: if faces.is_empty() { clearance() } else { 0.0 },
+            faces,
+        }
+    }
+
+    /// The contact with some faces of its target alone, by their numbers, ascending. Points see of these what they see of all, and of the sharp edges
+    /// between them.
     pub fn with_some_faces(&self, kept: &[u32]) -> Contact {
         let Target::Surface(faces) = &self.target else {
             return self.clone();
@@ -93,6 +119,10 @@ impl Contact {
         let sight = self.sight.as_ref().map(|sight| sight.with_some_faces(kept));
         Contact {
             target: Target::Surface(some.collect()),
+            edges: self
+                .edges
+                .as_ref()
+                .and_then(|edges| edges.with_some_faces(kept)),
             sight,
             ..self.clone()
         }

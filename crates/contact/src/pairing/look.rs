@@ -12,6 +12,7 @@ use super::found::Look;
 use super::near::Reach;
 use super::stencil::Stencil;
 use super::{Near, Pairing};
+use crate::crossing::Opposite;
 use crate::rest::{BLOCK, Rest};
 use crate::search::faces::{FaceTree, Question};
 use crate::search::group::Group;
@@ -33,7 +34,10 @@ impl Contact {
         groups.resize_with(self.points.len().div_ceil(BLOCK), Group::default);
         if let (Target::Surface(faces), Some(_)) = (&self.target, &self.sight) {
             let nothing = Kept::default();
-            let kept = due.iter().map(|&point| {
+            let of_faces = due
+                .iter()
+                .filter(|&&k| self.points[k as usize].edge().is_none());
+            let kept = of_faces.map(|&point| {
                 let k = point as usize;
                 groups[k / BLOCK].kept.get(k % BLOCK).unwrap_or(&nothing)
             });
@@ -50,13 +54,13 @@ impl Contact {
             (group.due, group.watches) = (first..first + points.len(), watches);
             first += points.len();
         }
-        let (faces, span) = (&search.faces, pairing.span);
+        let (trees, span) = ((&search.faces, &search.lines), pairing.span);
         let mut looks = std::mem::take(&mut pairing.work.looks);
         looks.resize_with(groups.len().max(looks.len()), Vec::new);
         let pieces = groups.par_iter_mut().zip(&mut looks);
         pieces.for_each(|(group, looks)| {
             for &point in &due[std::mem::take(&mut group.due)] {
-                looks.push(self.look((places, near, reach), faces, (point, span), group));
+                looks.push(self.look((places, near, reach), trees, (point, span), group));
             }
         });
         for (group, looks) in groups.iter_mut().zip(&mut looks) {
@@ -79,7 +83,7 @@ impl Contact {
     fn look(
         &self,
         (places, near, reach): (&Places, &Near, Reach),
-        tree: &FaceTree,
+        (tree, lines): (&FaceTree, &FaceTree),
         (number, span): (u32, [f64; 2]),
         group: &mut Group,
     ) -> Look {
@@ -98,6 +102,9 @@ impl Contact {
                     gap - reach.watched
                 };
                 (stencil, clearance)
+            }
+            Target::Surface(_) if point.edge().is_some() => {
+                self.look_at_edge((places, lines), reach, number as usize)
             }
             Target::Surface(faces) if point.crosses() => {
                 let found = tree.crossed(places, faces, point);
@@ -183,6 +190,31 @@ impl Contact {
             (Some((foot, _)), None) => (None, 0.5 * (foot.distance - limit)),
             (None, None) => (None, f64::INFINITY),
         }
+    }
+
+    /// What the edge of a point faces, and how far both sides may come before it is looked at again, m.
+    fn look_at_edge(
+        &self,
+        target: (&Places, &FaceTree),
+        reach: Reach,
+        k: usize,
+    ) -> (Option<Stencil>, f64) {
+        let Some(edges) = &self.edges else {
+            return (None, f64::INFINITY);
+        };
+        let limit = self.limit(k, reach.watched).max(edges.depth());
+        let limit = limit.min(edges.reach());
+        let most = self.limit(k, reach.most).max(2.0 * limit);
+        // whether edges meet may change with any motion, their distance may not
+        let apart = self.distance_of_edges(target, k, most).unwrap_or(most);
+        if apart > limit {
+            return (None, 0.5 * (apart - limit));
+        }
+        let found = self.opposite_edge(target, k, limit);
+        let is_near = |found: &Opposite| found.foot.gap + self.offset(k) <= reach.near;
+        let near = found.filter(is_near);
+        let stencil = near.map(|found| Stencil::opposite_to(target.0, &found));
+        (stencil, 0.0)
     }
 
     /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal.

@@ -7,7 +7,7 @@ use carom_mesh::Face;
 use super::Pairing;
 use crate::rest::Rest;
 use crate::search::{foot_on, spread};
-use crate::{Contact, Integration, Places, Point, Search, Sight, Sliding, Target};
+use crate::{Contact, Edges, Integration, Places, Point, Search, Sight, Sliding, Target};
 
 /// What a pairing of the near points of a contact is given.
 pub struct Near<'a> {
@@ -184,7 +184,8 @@ impl Contact {
         rest.due(&mut due);
         if !due.is_empty() {
             if let (Target::Surface(faces), false) = (&self.target, small) {
-                search.renew_near(places, faces, rest.travelled());
+                let lines = self.edges.as_ref().map_or(&[][..], Edges::lines);
+                search.renew_near(places, (faces, lines), rest.travelled());
             }
             match (small, mortar) {
                 (true, _) => self.move_near(

@@ -150,6 +150,7 @@ mod tests {
             mortar: None,
             target: Target::Surface(faces),
             sight: None,
+            edges: None,
             offsets: Vec::new(),
             near_only: false,
         };

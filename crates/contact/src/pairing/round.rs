@@ -1,10 +1,18 @@
-//! Second derivative of the gap between a point, or the axis of a beam, and another axis with a round surface, or an edge or a corner of a shell.
+//! Second derivative of the gap between a point, or the axis of a beam, and another axis with a round surface, or an edge or a corner of a shell;
+//! and of that between two sharp edges of solids.
 //!
 //! The gap is the least distance d = |r| less the radii, r = x(ζ_A) - y(ζ_B), over the places ζ on the lines that are free to move:
 //! not held at an end, and of the secondary side only where it crosses. With n = r/d, τ̃_k = ∂r/∂ζ_k, r·τ̃_k = 0, and r̂ the relative
 //! motion of places that are held
 //!
 //! `d″ = (r̂ · (I - n ⊗ n) r̂ - q_k (τ̃_k·τ̃_l)⁻¹ q_l)/d`, `q_k = τ̃_k·r̂ + r·δτ̃_k`.
+//!
+//! Where both places are free, τ̃_1 and τ̃_2 span the plane normal to n, and I - n ⊗ n = τ̃_k (τ̃_k·τ̃_l)⁻¹ τ̃_l. The distance then cancels, and of
+//! the gap g of two sharp edges, r = g n, of either sign,
+//!
+//! `g″ = -(2 τ̃_k·r̂ + g ω_k) (τ̃_k·τ̃_l)⁻¹ ω_l`, `ω_k = n·δτ̃_k`,
+//!
+//! also where it is zero.
 
 use carom_algebra::tensor::Vec3;
 use carom_elements::MAX_FACE_NODES as NODES;
@@ -20,15 +28,9 @@ pub fn add_curvature(point: &Point, foot: &Foothold, factor: f64, block: &mut Bl
     if d == 0.0 {
         return;
     }
-    let mut relative = [0.0; 2 * NODES];
-    let shares = point.carriers().map(|(_, s)| s);
-    let opposite = foot.shape[..foot.element().nodes].iter().map(|n| -n);
-    let mut count = 0;
-    for (to, share) in relative.iter_mut().zip(shares.chain(opposite)) {
-        *to = share;
-        count += 1;
-    }
-    let relative = &relative[..count];
+    let count = point.carriers().count() + foot.element().nodes;
+    let shares = relative(point, foot);
+    let relative = &shares[..count];
     let across = (carom_algebra::tensor::Mat3::identity() - r * r.transpose() / (d * d)) / d;
     let across = [0, 1, 2].map(|i| [0, 1, 2].map(|j| across[(i, j)]));
     for (a, s) in relative.iter().enumerate() {
@@ -54,6 +56,47 @@ pub fn add_curvature(point: &Point, foot: &Foothold, factor: f64, block: &mut Bl
     }
 }
 
+/// Adds factor · g″ to a block over the nodes of a point of a sharp edge and of the edge that it crosses. `gap` in m, `normal` a unit vector.
+pub fn add_edge_curvature(
+    (point, foot): (&Point, &Foothold),
+    (gap, normal): (f64, Vec3),
+    factor: f64,
+    block: &mut Block,
+) {
+    let (Some(own), Some(other)) = (own_line(point, foot), line_of_face(point, foot)) else {
+        return;
+    };
+    let relative = relative(point, foot);
+    let (tt, ts) = (own.tangent.norm_squared(), own.tangent.dot(&other.tangent));
+    let ss = other.tangent.norm_squared();
+    let det = tt * ss - ts * ts;
+    let inverse = [[ss / det, -ts / det], [-ts / det, tt / det]];
+    let forms = [own, other].map(|line| {
+        let turn = line.turn(&normal);
+        let mut moved = [Vec3::zeros(); 2 * NODES];
+        for (moved, (share, turn)) in moved.iter_mut().zip(relative.iter().zip(&turn)) {
+            *moved = line.tangent * (2.0 * share) + turn * gap;
+        }
+        (moved, turn)
+    });
+    for ((moved, _), row) in forms.iter().zip(&inverse) {
+        for ((_, turn), entry) in forms.iter().zip(row) {
+            block.add(-0.5 * factor * entry, moved, turn);
+        }
+    }
+}
+
+/// Coefficients of the relative motion x - y of places that are held, over the nodes of the point and then of the face; zero of others.
+fn relative(point: &Point, foot: &Foothold) -> [f64; 2 * NODES] {
+    let mut relative = [0.0; 2 * NODES];
+    let shares = point.carriers().map(|(_, s)| s);
+    let opposite = foot.shape[..foot.element().nodes].iter().map(|n| -n);
+    for (to, share) in relative.iter_mut().zip(shares.chain(opposite)) {
+        *to = share;
+    }
+    relative
+}
+
 /// A line along which a place of the gap is free to move.
 struct Line {
     /// τ̃ in m.
@@ -71,6 +114,14 @@ impl Line {
         for (form, share) in form.iter_mut().zip(relative) {
             *form = self.tangent * *share;
         }
+        form[self.ends[0]] -= r * self.share;
+        form[self.ends[1]] += r * self.share;
+        form
+    }
+
+    /// r·δτ̃ over the nodes of the stencil.
+    fn turn(&self, r: &Vec3) -> Form {
+        let mut form = [Vec3::zeros(); 2 * NODES];
         form[self.ends[0]] -= r * self.share;
         form[self.ends[1]] += r * self.share;
         form

@@ -248,6 +248,10 @@ impl Stencil {
     /// Adds factor · ∂²g/∂u² to a block over [`Stencil::unknowns`].
     pub fn add_curvature(&self, factor: f64, block: &mut Block) {
         match &self.foot {
+            Foot::Face(foot) if self.point.edge().is_some() => {
+                let signed = (self.gap, Vec3::from(self.normal));
+                round::add_edge_curvature((&self.point, foot), signed, factor, block);
+            }
             Foot::Face(foot) if foot.face.is_round() && !round::is_inside(foot) => {
                 round::add_curvature(&self.point, foot, factor, block);
             }

@@ -41,6 +41,7 @@ impl Tie {
             mortar: Some(mortar),
             target: Target::Surface(primary),
             sight: None,
+            edges: None,
             offsets: Vec::new(),
             near_only: false,
         };

@@ -302,10 +302,31 @@ impl FaceTree {
         beside: f64,
         measure: impl FnMut(u32) -> f64,
     ) -> Option<u32> {
+        let found = self.nearest_within((x, beside), f64::INFINITY, measure);
+        found.map(|(item, _)| item)
+    }
+
+    /// The same with the distance, of the items that are no further away than `within` (m).
+    pub fn nearest_within(
+        &self,
+        (x, beside): (&[f64; 3], f64),
+        within: f64,
+        measure: impl FnMut(u32) -> f64,
+    ) -> Option<(u32, f64)> {
         let tree = self.tree.as_ref()?;
         let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
-        let found = tree.closest(&there, f64::INFINITY, self.moved + beside, measure);
-        found.map(|(item, _)| item)
+        tree.closest(&there, within, self.moved + beside, measure)
+    }
+
+    /// Items whose boxes are within a distance (m) of a place.
+    pub fn near(&self, x: &[f64; 3], within: f64) -> Vec<u32> {
+        let mut near = Vec::new();
+        if let Some(tree) = &self.tree {
+            let there = [0, 1, 2].map(|i| x[i] - self.shift[i]);
+            let around = within + self.moved + tree.rounding(&there);
+            tree.near(&there, around, &mut near);
+        }
+        near
     }
 
     /// The most that nodes may move, m, before a face that is beyond the `limit` (m) of a place, or out of its view, may come into

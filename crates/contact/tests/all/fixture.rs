@@ -28,6 +28,7 @@ pub fn contact(points: Vec<Point>, target: Target) -> Contact {
         mortar: None,
         target,
         sight: None,
+        edges: None,
         offsets: Vec::new(),
         near_only: false,
     }

@@ -8,6 +8,7 @@ mod carried;
 mod certificate;
 mod cores;
 mod derivatives;
+mod edges;
 mod fixture;
 mod mortar;
 mod moving;

@@ -74,6 +74,7 @@ fn contact(target: Target, points: Vec<Point>) -> Contact {
         mortar: None,
         target,
         sight: None,
+        edges: None,
         offsets: Vec::new(),
         near_only: false,
     }

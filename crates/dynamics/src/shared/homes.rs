@@ -191,6 +191,7 @@ impl Families {
                 .chain(contact.faces_around(number))
                 .flat_map(Face::corners);
             let own = point.carriers().map(|(node, _)| node);
+            let own = own.chain(point.beside_edge().iter().copied());
             self.join(own.chain(nodes.copied()));
         }
     }

@@ -234,5 +234,8 @@ fn follows(contact: &Contact) -> bool {
     matches!(contact.target, Target::Surface(_))
         && contact.mortar.is_none()
         && contact.sliding == Sliding::Finite
-        && !contact.points.iter().any(|point| point.crosses())
+        && !contact
+            .points
+            .iter()
+            .any(|point| point.crosses() && !point.is_at_edge())
 }
