@@ -150,7 +150,8 @@ fn gaps_of_sides_that_are_apart_are_not_known() {
         gravity: 0.0,
         dt: 1e-3,
     };
-    let [near, all] = [true, false].map(|near_only| run(blocks(fall, velocity(), near_only)));
+    let [near, all] =
+        [true, false].map(|near_only| run(blocks(fall, velocity(), near_only), STEPS));
     assert!(near.iter().all(|(_, gap)| *gap == f64::INFINITY));
     assert!(all.iter().all(|(_, gap)| gap.is_finite()));
 }
