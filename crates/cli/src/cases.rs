@@ -44,6 +44,7 @@ cases! {
     "hertz-points":,
     "stick-slip":,
     "stiff-soft":,
+    "crossed-bars": "bars.msh",
     "sliding-block": "blocks.msh",
     "bolted-plates": "plates.msh",
     "oscillators-in-earthquake":,

@@ -24,6 +24,7 @@ pub const BARS: &[Small] = &[
     ("oscillators-in-earthquake/case.toml", &[]),
     ("pounding/case.toml", &[]),
     ("stiff-soft/case.toml", &[]),
+    ("crossed-bars/case.toml", &[]),
     ("two-bars-newmark/case.toml", &[]),
     ("two-bars/case.toml", &[]),
 ];
