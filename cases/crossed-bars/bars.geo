@@ -1,4 +1,4 @@
-// gmsh -3 -format msh2 bars.geo -o bars.msh
+// bars.msh was written by hand; this makes the same mesh but for the order of the nodes: gmsh -3 -format msh2 bars.geo -o bars.msh
 // Two square bars of 50 mm and 600 mm, turned by 45° about their axes: `a` along x, `b` along y, 1.7893 mm above it, edge over edge.
 h = 0.05 / Sqrt(2);
 z = 2 * h + 0.0017893218813452445;
