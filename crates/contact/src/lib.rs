@@ -9,6 +9,7 @@
 pub mod certificate;
 mod contact;
 mod crossing;
+mod edge_pairs;
 mod edges;
 mod initial;
 mod mortar;

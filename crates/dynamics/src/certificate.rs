@@ -7,11 +7,11 @@ use std::collections::BTreeSet;
 
 use carom_contact::Target;
 use carom_contact::certificate::{Moved, Room, look, overlap};
-use carom_mesh::Bounds;
+use carom_mesh::{Bounds, Face};
 use serde::{Deserialize, Serialize};
 
 use crate::state::State;
-use crate::system::{CoreOf, CoreOwner, Motion, Order, System};
+use crate::system::{ContactPair, CoreOf, CoreOwner, Motion, System};
 
 type Vec3 = [f64; 3];
 
@@ -27,6 +27,10 @@ pub struct Certificate {
     near: f64,
     /// Connected parts that links join, ascending.
     linked: BTreeSet<[usize; 2]>,
+    /// Contacts whose gaps do not count from the surfaces, or are penetrated as their curve says.
+    elsewhere: Vec<bool>,
+    /// Pairs of bodies of these, ascending.
+    shifted: BTreeSet<[usize; 2]>,
     /// Time of the last state, s.
     time: f64,
     room: Room,
@@ -128,12 +132,27 @@ impl Certificate {
         let count = movers.len();
         let mut certificate = Certificate {
             linked: linked(system),
+            shifted: BTreeSet::new(),
+            elsewhere: system.contacts.iter().map(is_elsewhere).collect(),
             time,
             near: f64::INFINITY,
             told: Told::default(),
             room: Room::default(),
             movers,
         };
+        for (contact, _) in system
+            .contacts
+            .iter()
+            .zip(&certificate.elsewhere)
+            .filter(|of| *of.1)
+        {
+            for (k, &one) in contact.bodies.iter().enumerate() {
+                let others = contact.bodies[k..].iter();
+                certificate
+                    .shifted
+                    .extend(others.map(|&other| [one, other]));
+            }
+        }
         for mover in &mut certificate.movers {
             mover.take(system, (time, motion));
             mover.earlier.clone_from(&mover.nodes);
@@ -146,7 +165,8 @@ impl Certificate {
         certificate
     }
 
-    /// Pairs of bodies without a contact that meet within a time `span` (s) if each goes on along its velocity at the start.
+    /// Pairs of bodies without a contact that meet within a time `span` (s) if each goes on at its mean velocity at the start, without turning; of
+    /// many bodies of those that are near at the start.
     pub fn ahead(system: &System, span: f64) -> Vec<(String, f64)> {
         let start = Motion {
             u: system.initial.displacement.clone(),
@@ -154,25 +174,32 @@ impl Certificate {
             frames: system.initial.frames.clone(),
             ..Motion::default()
         };
+        let moves = |body: usize| system.mean_velocity(body, &start.v);
+        let mut bodies = 0..system.bodies.len();
+        let first = moves(0);
+        if system.bodies.len() < 2 || bodies.all(|body| moves(body) == first) {
+            return Vec::new();
+        }
         let mut certificate = Certificate::at(system, (0.0, &start));
         certificate.choose(system, 0.0);
-        for mover in &mut certificate.movers {
-            let nodes = mover.of.core.nodes().iter();
-            let velocities = nodes.map(|&node| system.of_node(node, &start, Order::Velocity));
-            let moved = mover.nodes.iter().zip(velocities);
-            let moved = moved.map(|(x, v)| [0, 1, 2].map(|i| x[i] + span * v[i]));
-            mover.nodes = moved.collect();
-        }
         let pairs = std::mem::take(&mut certificate.told.pairs);
+        for mover in &mut certificate.movers {
+            let v = mover.body().map_or([0.0; 3], moves);
+            for x in &mut mover.nodes {
+                *x = [0, 1, 2].map(|i| x[i] + span * v[i]);
+            }
+        }
         let mut met = Vec::new();
         for Pair { of, .. } in pairs {
-            let alone = certificate.contact_of(system, of).is_none();
-            if alone && !certificate.overlaps_at_start(system.dim, of) {
-                let moved = of.map(|number| certificate.movers[number as usize].moved());
-                let found = look(moved, system.dim, &mut certificate.room);
-                let when = found.met.map(|met| met.part * span);
-                met.extend(when.map(|when| (certificate.names(system, of), when)));
+            let bodies = of.map(|number| certificate.movers[number as usize].body());
+            if bodies.contains(&None) || certificate.overlaps_at_start(system.dim, of) {
+                continue;
             }
+            let moved = of.map(|number| certificate.movers[number as usize].moved());
+            let found = look(moved, system.dim, &mut certificate.room);
+            let when = found.met.map(|met| met.part * span);
+            let when = when.filter(|_| certificate.contact_of(system, of).is_none());
+            met.extend(when.map(|when| (certificate.names(system, of), when)));
         }
         met
     }
@@ -219,10 +246,11 @@ impl Certificate {
         &self.told.overlapping
     }
 
-    /// Pairs of bodies that links join: they are not looked at.
+    /// Pairs of bodies that are not looked at, since links join them or the gaps of their contact count from elsewhere.
     pub fn joined<'a>(&'a self, system: &'a System) -> impl Iterator<Item = [u32; 2]> + 'a {
         let is_body = |number: u32| self.movers[number as usize].body().is_some();
-        let pairs = self.all_pairs();
+        let none = self.linked.is_empty() && self.shifted.is_empty();
+        let pairs = self.all_pairs().take(if none { 0 } else { usize::MAX });
         pairs.filter(move |of| {
             of.iter().all(|number| is_body(*number)) && self.leaves_out(system, *of)
         })
@@ -241,7 +269,7 @@ impl Certificate {
         }
         if self.near.is_finite() {
             self.told.left -= all.diagonal();
-            if !(self.told.left > 0.0) {
+            if self.told.left <= 0.0 {
                 self.choose(system, all.diagonal());
             }
         }
@@ -249,7 +277,6 @@ impl Certificate {
         pairs.retain_mut(|pair| {
             let [one, other] = pair.of.map(|number| &self.movers[number as usize].motion);
             pair.left -= relative(one, other);
-            // a motion that is no number is looked at too
             pair.left > 0.0 || self.look(system, (state, before), pair)
         });
         self.told.pairs = pairs;
@@ -268,10 +295,7 @@ impl Certificate {
             return true;
         };
         let contact = self.contact_of(system, pair.of);
-        let held = contact.is_some_and(|contact| {
-            let points = system.points_of(contact);
-            state.interface.force[points].iter().any(|f| *f > 0.0)
-        });
+        let held = contact.is_some_and(|contact| self.is_held(system, state, (contact, pair.of)));
         self.told.crossings.push(Crossing {
             of: pair.of,
             contact,
@@ -282,21 +306,47 @@ impl Certificate {
         false
     }
 
-    /// The contact between two.
+    /// The contact between two: of bodies the first that has faces of one on a side and of the other on the other.
     fn contact_of(&self, system: &System, of: [u32; 2]) -> Option<usize> {
         let owners = of.map(|number| &self.movers[number as usize].of.owner);
+        let on = |faces: &[Face], number: u32| {
+            let own = self.movers[number as usize].of.core.nodes();
+            let has = |node: &u32| own.binary_search(node).is_ok();
+            faces.iter().any(|face| face.corners().iter().all(has))
+        };
         match owners {
-            [CoreOwner::Body(one), CoreOwner::Body(other)] => {
+            [CoreOwner::Body(_), CoreOwner::Body(_)] => {
                 let mut contacts = system.contacts.iter();
                 contacts.position(|contact| {
-                    let has = |body: &usize| contact.bodies.contains(body);
-                    let both = has(one) && has(other);
-                    let itself = one != other || contact.contact.faces_itself();
-                    matches!(contact.target, Target::Surface(_)) && both && itself
+                    let Target::Surface(target) = &contact.target else {
+                        return false;
+                    };
+                    let own = &contact.secondary_faces;
+                    let both = |a: u32, b: u32| on(own, a) && on(target, b);
+                    both(of[0], of[1]) || both(of[1], of[0])
                 })
             }
             [_, CoreOwner::Shape(contact, _)] | [CoreOwner::Shape(contact, _), _] => Some(*contact),
         }
+    }
+
+    /// Whether a point of one of two that is near the other has a force of their contact.
+    fn is_held(&self, system: &System, state: &State, (contact, of): (usize, [u32; 2])) -> bool {
+        let motion = &state.motion;
+        let places = system.places(state.time, &motion.u, &motion.frames);
+        let points = system.points_of(contact);
+        let mut carrying = points.filter(|point| state.interface.force[*point] > 0.0);
+        carrying.any(|point| {
+            let (_, own) = system.point(point);
+            let point = &system.contacts[contact].points[own];
+            let x = Bounds::of(&[point.place(&places)]);
+            [[0, 1], [1, 0]].into_iter().any(|pair| {
+                let [one, other] = pair.map(|k| &self.movers[of[k] as usize]);
+                let has = one.of.core.nodes().binary_search(&point.node()).is_ok();
+                let reach = 1.1 * other.of.core.most_kept();
+                has && Bounds::of(&other.nodes).widened(reach).overlaps(&x)
+            })
+        })
     }
 
     fn overlaps_at_start(&mut self, dim: usize, of: [u32; 2]) -> bool {
@@ -325,18 +375,22 @@ impl Certificate {
             .iter()
             .map(|crossing| crossing.of)
             .collect();
+        // those that may come near in the step too
+        let near = self.near + motion;
         for (place, &one) in order.iter().enumerate() {
-            let end = boxes[one as usize].max[0] + self.near;
+            let end = boxes[one as usize].max[0] + near;
             for &other in &order[place + 1..] {
                 if boxes[other as usize].min[0] > end {
                     break;
                 }
                 let of = [one.min(other), one.max(other)];
                 let apart = boxes[one as usize].apart(&boxes[other as usize]);
-                let is_out = self.leaves_out(system, of)
-                    || self.told.overlapping.binary_search(&of).is_ok()
-                    || met.contains(&of);
-                if apart > self.near || is_out {
+                let is_out = || {
+                    self.leaves_out(system, of)
+                        || self.told.overlapping.binary_search(&of).is_ok()
+                        || met.contains(&of)
+                };
+                if apart > near || is_out() {
                     continue;
                 }
                 let known = old.binary_search_by(|pair| pair.of.cmp(&of));
@@ -345,24 +399,32 @@ impl Certificate {
             }
         }
         self.told.pairs.sort_by_key(|pair| pair.of);
-        self.told.left = self.near - motion;
+        self.told.left = self.near;
     }
 
-    /// Whether a pair is not looked at: two shapes, a shape and what its contact is not of, and bodies that links join.
+    /// Whether a pair is not looked at: two shapes, a shape and what its contact is not of, bodies that links join, and those of contacts whose gaps count
+    /// from elsewhere.
     fn leaves_out(&self, system: &System, of: [u32; 2]) -> bool {
         let owners = of.map(|number| &self.movers[number as usize].of.owner);
         match owners {
             [CoreOwner::Body(one), CoreOwner::Body(other)] => {
-                let [one, other] = [one, other].map(|&body| system.part_of_body[body]);
-                self.linked.contains(&[one.min(other), one.max(other)])
+                let parts = [one, other].map(|&body| system.part_of_body[body]);
+                let [first, last] = [parts[0].min(parts[1]), parts[0].max(parts[1])];
+                self.linked.contains(&[first, last])
+                    || self.shifted.contains(&[*one.min(other), *one.max(other)])
             }
             [CoreOwner::Shape(..), CoreOwner::Shape(..)] => true,
             [CoreOwner::Body(body), CoreOwner::Shape(contact, _)]
             | [CoreOwner::Shape(contact, _), CoreOwner::Body(body)] => {
-                !system.contacts[*contact].bodies.contains(body)
+                !system.contacts[*contact].bodies.contains(body) || self.elsewhere[*contact]
             }
         }
     }
+}
+
+/// Whether gaps of a contact do not count from the surfaces, or what it lets go deep is told by its curve.
+fn is_elsewhere(contact: &ContactPair) -> bool {
+    contact.law.get().is_of_the_whole() || contact.offsets.iter().any(|offset| *offset != 0.0)
 }
 
 /// Connected parts that links join, ascending.

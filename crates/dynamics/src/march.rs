@@ -239,8 +239,14 @@ pub fn go_on(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let mut told = observers.iter_mut();
-    let told = told.try_for_each(|observer| observer.resumed(run));
+    let told = observers
+        .iter_mut()
+        .try_for_each(|observer| observer.resumed(run));
+    if let Err(error) = &told {
+        // other ranks wait before their first step
+        let cause = error.to_string();
+        run.agree(Going::Failed { rank: 0, cause });
+    }
     let result = told.and_then(|()| steps(run, end, observers, stop));
     finish(run, observers, result)
 }

@@ -86,7 +86,7 @@ pub fn look([one, other]: [Moved; 2], dim: usize, room: &mut Room) -> Look {
     let wide = reach + pair::NEAR * keeps;
     a.choose(&one, &whole_b.widened(wide));
     b.choose(&other, &whole_a.widened(wide));
-    let axis = longest(&whole_a.union(&whole_b));
+    let axis = sparsest(&whole_a.union(&whole_b), [&a.patches, &b.patches]);
     for side in [&mut *a, &mut *b] {
         side.patches.sort_unstable_by(|(one, k), (other, l)| {
             one.min[axis].total_cmp(&other.min[axis]).then(k.cmp(l))
@@ -296,11 +296,16 @@ fn drift(moved: &Moved) -> Vec3 {
     sum.map(|sum| sum / moved.before.len().max(1) as f64)
 }
 
-/// The axis along which a box is longest.
-fn longest(bounds: &Bounds) -> usize {
-    let side = |axis: usize| bounds.max[axis] - bounds.min[axis];
-    (1..3).fold(0, |longest, axis| match side(axis) > side(longest) {
+/// The axis along which a box holds most of the boxes of patches one behind the other.
+fn sparsest(whole: &Bounds, patches: [&[(Bounds, u32)]; 2]) -> usize {
+    let side = |bounds: &Bounds, axis: usize| bounds.max[axis] - bounds.min[axis];
+    let places = |axis: usize| {
+        let all = patches.into_iter().flatten();
+        let sum: f64 = all.map(|(bounds, _)| side(bounds, axis)).sum();
+        side(whole, axis) / sum.max(f64::MIN_POSITIVE)
+    };
+    (1..3).fold(0, |best, axis| match places(axis) > places(best) {
         true => axis,
-        false => longest,
+        false => best,
     })
 }

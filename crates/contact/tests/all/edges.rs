@@ -21,21 +21,26 @@ struct Bars {
 
 impl Bars {
     fn new(height: f64) -> Bars {
+        Bars::shifted(height, 1, [0.1, -0.2])
+    }
+
+    /// Of so many elements along, shifted along themselves, m.
+    fn shifted(height: f64, cells: usize, shifts: [f64; 2]) -> Bars {
         let side = HALF * 2.0_f64.sqrt();
         let of = |name: &str| {
             let corner = [-1.0, -0.5 * side, -0.5 * side];
-            generate::box_(name, corner, [2.0, side, side], [1; 3], false)
+            generate::box_(name, corner, [2.0, side, side], [cells, 1, 1], false)
         };
         let (mut mesh, mut upper) = (of("a"), of("b"));
         let diagonal = |[x, y, z]: [f64; 3]| [x, (y - z) / side * HALF, (y + z) / side * HALF];
         for x in &mut mesh.nodes {
             let [along, across, up] = diagonal(*x);
-            *x = [along + 0.1, across, up - HALF];
+            *x = [along + shifts[0], across, up - HALF];
         }
         for x in &mut upper.nodes {
             let [along, across, up] = diagonal(*x);
             // a quarter turn about z keeps the faces turned outwards
-            *x = [-across, along - 0.2, up + HALF + height];
+            *x = [-across, along + shifts[1], up + HALF + height];
         }
         mesh.merge("b", upper).unwrap();
         let surface = |name: &str| Surface::outer(&mesh, &mesh.groups[name].elements);
@@ -134,6 +139,29 @@ fn the_gap_of_two_edges_is_signed_and_linear_through_zero() {
         assert!((normal[2] + 1.0).abs() < 1e-15, "{normal:?}");
     }
     assert_eq!(facing(&bars.paired_after(&contact, 0.151)), [0; 0]);
+}
+
+/// Where the edges cross at a node in the middle of one or both, or just beside it, one of the two edges there tells, and no other.
+#[test]
+fn edges_that_cross_at_a_node_are_told_once() {
+    for shifts in [
+        [0.0, 0.0],
+        [0.0, 0.3],
+        [0.3, 0.0],
+        [2e-4, 0.0],
+        [0.0, -2e-4],
+        [-2e-4, 2e-4],
+    ] {
+        let bars = Bars::shifted(0.05, 2, shifts);
+        for contact in [bars.contact(), bars.contact_of_all()] {
+            for down in [0.0, 0.05, 0.08] {
+                let pairing = bars.paired_after(&contact, down);
+                let facing = facing(&pairing);
+                assert_eq!(facing.len(), 1, "{shifts:?} {down}");
+                assert!((pairing.rows.gap(facing[0]) - (0.05 - down)).abs() < 1e-15);
+            }
+        }
+    }
 }
 
 /// On its way out below the lower bar the upper one has edges before those of the lower one, of which none may touch: their cones are those of

@@ -75,7 +75,7 @@ const DEEP: &str =
 pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
     let Some(certificate) = evidence.crossings.certificate() else {
         return Finding::Unchecked(
-            "whether surfaces pass through each other: of several ranks none has all nodes"
+            "whether surfaces pass through each other: nobody has seen whole states, as on several ranks"
                 .to_owned(),
         );
     };
@@ -160,7 +160,12 @@ pub(super) fn left_open(evidence: &Evidence) -> Finding {
     let joined = certificate.joined(evidence.system);
     let mut pairs: Vec<String> = overlapping
         .map(|of| format!("{}, which meet at the start", named(of)))
-        .chain(joined.map(|of| format!("{}, which links join", named(&of))))
+        .chain(joined.map(|of| {
+            format!(
+                "{}, which links join or whose gaps count from elsewhere",
+                named(&of)
+            )
+        }))
         .collect();
     let deleting = evidence.system.bodies.iter();
     let deleting = deleting.filter(|body| body.has_deletion());
