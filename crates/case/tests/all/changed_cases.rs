@@ -66,8 +66,12 @@ fn numbers(case: &Project, one: &Answer) -> Vec<String> {
 
 fn names(case: &Project, one: &Answer) -> Vec<String> {
     let (other, names) = case.reversed();
+    // nodes that rigid bodies add stand in the order of these
+    let of_file = case.renumbered(1).map(|(_, nodes)| nodes.len());
+    let mut nodes = all(one);
+    nodes.truncate(of_file.unwrap_or(nodes.len()));
     let compared = Compared {
-        nodes: all(one),
+        nodes,
         names,
         ..Compared::default()
     };
