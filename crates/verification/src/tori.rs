@@ -67,7 +67,8 @@ pub(crate) const CHECK: Check = Check {
             Row::at_most("change of energy, relative", kept.energy, 1e-8),
             Row::at_least("most points with a force", closed as f64, 2.0),
             Row::at_least("largest strain energy / energy", strained, strain),
-            Row::at_most("attempts a step", attempts as f64 / steps as f64, 1.1).regression(),
+            // steps that are cut where a point passes what it faces have two more attempts each
+            Row::at_most("attempts a step", attempts as f64 / steps as f64, 1.2).regression(),
         ];
         rows.extend(iterations.rows("energy-momentum", 6.0));
         rows.push(iterations.quadratic("energy-momentum"));
