@@ -132,7 +132,7 @@ impl Contact {
     /// faces too. Edges do not count there. `x`: reference coordinates by system number, m.
     pub fn with_faces(&self, mut faces: Vec<Face>, x: &[[f64; 3]]) -> Contact {
         Rim::mark(&mut faces, |node| x[node as usize], |node| node);
-        let sight = match self.faces_itself() {
+        let sight = match self.has_both_sides() {
             true => Some(Sight::new((&self.points, &faces), &faces, x, None)),
             false => self.sight.as_ref().map(|sight| sight.with_target(&faces)),
         };
@@ -169,9 +169,23 @@ impl Contact {
         }
     }
 
-    /// Whether the surface faces itself.
-    pub fn faces_itself(&self) -> bool {
-        self.sight.as_ref().is_some_and(Sight::is_of_itself)
+    /// Whether points are on both sides: the surface faces itself, or its sides face each other.
+    pub fn has_both_sides(&self) -> bool {
+        self.sight.as_ref().is_some_and(Sight::has_both_sides)
+    }
+
+    /// Whether it is looked for both ways: points of the primary side follow those of the secondary one, and the faces of both sides are the target.
+    pub fn looks_both_ways(&self) -> bool {
+        self.points.iter().any(Point::is_on_primary)
+    }
+
+    /// Faces of the primary side, by system number, of a contact with this many faces on the secondary one; none of an obstacle.
+    pub fn faces_of_primary(&self, secondary: usize) -> &[Face] {
+        match &self.target {
+            Target::Surface(faces) if self.looks_both_ways() => &faces[secondary..],
+            Target::Surface(faces) => faces,
+            Target::Rigid(_) => &[],
+        }
     }
 
     /// What a point sees; `None` for everything.

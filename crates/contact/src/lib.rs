@@ -40,4 +40,4 @@ pub use places::{Balance, Frames, Places};
 pub use point::Point;
 pub use rows::Rows;
 pub use search::{Held, Search};
-pub use sight::{Parts, Sight};
+pub use sight::{Part, Parts, Sight};

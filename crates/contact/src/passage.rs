@@ -74,7 +74,10 @@ impl Contact {
                 let moved = most(faces, ways);
                 let given = (faces.as_slice(), moved);
                 let passes = |&k: &usize| {
-                    let entered = entered(&self.points[k], given, ways, (&search.faces, &mut room));
+                    let view = self.view(k);
+                    let faces_it = |item: u32| !view.is_some_and(|view| view.is_beside(item));
+                    let of = (&self.points[k], faces_it);
+                    let entered = entered(of, given, ways, (&search.faces, &mut room));
                     entered.is_some_and(|normal| {
                         let of = (&self.points[k], self.view(k));
                         let found = search.facing(end, faces, of);
@@ -120,9 +123,9 @@ fn most(faces: &[Face], [start, end]: [&Places; 2]) -> f64 {
     ways.fold(0.0, f64::max).sqrt()
 }
 
-/// The normal of a face that a point has passed from before it to behind it.
+/// The normal of a face that a point has passed from before it to behind it, of those that it faces, by number.
 fn entered(
-    point: &Point,
+    (point, faces_it): (&Point, impl Fn(u32) -> bool),
     (faces, moved): (&[Face], f64),
     [start, end]: [&Places; 2],
     (tree, room): (&FaceTree, &mut Vec<u32>),
@@ -132,7 +135,7 @@ fn entered(
     tree.overlapping((end, faces), &around, room);
     room.iter().find_map(|&item| {
         let face = &faces[item as usize];
-        if !may_be_passed(face) {
+        if !may_be_passed(face) || !faces_it(item) {
             return None;
         }
         let [before, now] = [start, end].map(|places| places.of_face(face));

@@ -24,6 +24,8 @@ pub struct Point {
     pub radius: f64,
     /// Whether it is the place between its two nodes that is nearest to the target, wherever that is.
     crosses: bool,
+    /// Whether it is on the primary side of a contact that looks both ways: its force acts on the secondary side with the opposite sign.
+    on_primary: bool,
 }
 
 impl Point {
@@ -38,6 +40,7 @@ impl Point {
             share,
             radius: 0.0,
             crosses: false,
+            on_primary: false,
         };
         (point.nodes[0], point.shape[0]) = (node, 1.0);
         point
@@ -46,6 +49,27 @@ impl Point {
     /// The point at another distance from the surface, m.
     pub fn around(self, radius: f64) -> Point {
         Point { radius, ..self }
+    }
+
+    /// The point on the primary side of a contact that looks both ways.
+    pub fn on_primary(self) -> Point {
+        Point {
+            on_primary: true,
+            ..self
+        }
+    }
+
+    /// Whether it is on the primary side of a contact that looks both ways.
+    pub fn is_on_primary(&self) -> bool {
+        self.on_primary
+    }
+
+    /// What the sum of its row over its own nodes is on the secondary side.
+    pub(crate) fn on_secondary(&self, sum: [f64; 3]) -> [f64; 3] {
+        match self.on_primary {
+            true => sum.map(|s| -s),
+            false => sum,
+        }
     }
 
     /// Lets a node know a face that it is on, by the nodes of the face: it keeps as many as there is room for.
@@ -183,6 +207,7 @@ impl Point {
             share: 0.0,
             radius: 0.0,
             crosses: false,
+            on_primary: false,
         };
         point.nodes[..nodes.len()].copy_from_slice(nodes);
         (face.kind.table().shape)(xi, &mut point.shape[..nodes.len()]);

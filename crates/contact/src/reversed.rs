@@ -19,7 +19,7 @@ impl Contact {
         let mut faces = secondary.iter().chain(primary);
         let plain = faces.all(|face| face.radius.is_none() && face.kind.table().dim > 0);
         let follows = self.sliding == Sliding::Finite && self.offsets.is_empty();
-        if !plain || !follows || self.faces_itself() {
+        if !plain || !follows || self.has_both_sides() {
             return None;
         }
         let mut nodes: Vec<u32> = primary.iter().flat_map(Face::corners).copied().collect();

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 
 use self::across::Across;
 use self::lists::{Incidence, Lists};
-pub use self::parts::Parts;
+pub use self::parts::{Part, Parts};
 pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
 use crate::{Frames, Places, Point};
@@ -44,8 +44,12 @@ const OPPOSED: f64 = -0.5;
 /// Cosine of the angle between the normals of two faces around a point in the reference configuration from which on it is a sharp corner.
 const SHARP: f64 = 0.5;
 
-/// Part of the length of an edge by which its end may be nearer to a plane than the corner, for rounding.
-const LEVEL: f64 = 1e-9;
+/// Part of the length of an edge by which its end may be nearer to a plane than the corner, 1°: of a sharp edge along a plane one node is
+/// always pressed up a little more than the next.
+const LEVEL: f64 = 0.02;
+
+/// Cosine of the angle between the normal of a face and those around a corner, more than which all make as long as the corner does not point at the face.
+const POINTED: f64 = 0.05;
 
 /// Distance along a surface around axes or middles up to which a face is near, over the thickness: three, since gaps of points further on
 /// are open until the surface is bent to a radius of its thickness.
@@ -71,6 +75,8 @@ pub struct Sight {
     depth: Vec<f64>,
     /// Gap beyond which nothing is looked for, m.
     reach: f64,
+    /// Whether points are on both sides.
+    both: bool,
     /// Which points tell a contact that two would tell; none where no surface faces itself, or points are no nodes.
     sides: Option<Sides>,
     /// Whether the surface lies around axes or middles, without a far side.
@@ -102,6 +108,35 @@ impl Sight {
     /// configuration, which has to be free of penetration; gaps beyond four times the largest diagonal are then not looked
     /// for: in a step parts must come closer by less than that.
     pub fn new(
+        of: (&[Point], &[Face]),
+        target: &[Face],
+        x: &[[f64; 3]],
+        depth: Option<f64>,
+    ) -> Sight {
+        let mut sight = Sight::up_to(of, target, x, depth);
+        if sight.both && !sight.round {
+            sight.limit_to_thickness(of.0, target, x);
+        }
+        sight
+    }
+
+    /// The views of the points of two surfaces on each other, whose faces are the target together, those of the first before those of the second.
+    /// `x` and `depth` as in [`Sight::new`], the default of the depth too; `parts`: of both ([`Parts::both_ways`]).
+    pub fn both_ways(
+        (points, faces): (&[Point], &[Face]),
+        x: &[[f64; 3]],
+        depth: Option<f64>,
+        parts: &Parts,
+    ) -> Sight {
+        let sight = Sight::up_to((points, faces), faces, x, depth);
+        Sight {
+            reach: f64::INFINITY,
+            ..sight.with_parts(parts)
+        }
+    }
+
+    /// The views up to a depth, whatever the thickness is.
+    fn up_to(
         (points, secondary): (&[Point], &[Face]),
         target: &[Face],
         x: &[[f64; 3]],
@@ -153,6 +188,7 @@ impl Sight {
             across: Across::new(target),
             sharp: Vec::new(),
             reach: if itself { 4.0 * largest } else { f64::INFINITY },
+            both: itself,
             sides: None,
             round,
             parts: None,
@@ -161,7 +197,6 @@ impl Sight {
             sight.take_corners(points, x);
         }
         if itself && !round {
-            sight.limit_to_thickness(points, target, x);
             sight.take_sides(points, x);
         }
         sight
@@ -169,7 +204,7 @@ impl Sight {
 
     /// The views without faces of parts that do not touch. `parts`: of the faces that the views were made with.
     pub fn with_parts(self, parts: &Parts) -> Sight {
-        let parts = (!parts.apart.is_empty()).then(|| parts.clone());
+        let parts = parts.keep_any_apart().then(|| parts.clone());
         Sight { parts, ..self }
     }
 
@@ -214,9 +249,9 @@ impl Sight {
         around.map(|&face| &self.faces[face as usize])
     }
 
-    /// Whether the surface faces itself: points on its both sides may then say the same.
-    pub fn is_of_itself(&self) -> bool {
-        self.reach.is_finite()
+    /// Whether points are on both sides, of a surface that faces itself or of two that face each other: two of them may then say the same.
+    pub fn has_both_sides(&self) -> bool {
+        self.both
     }
 
     /// Parts that do not touch each other, if there are any.
@@ -409,10 +444,9 @@ impl View<'_> {
         let around = self.sight.around.of(self.point).iter();
         let around = around.map(|&k| &normals[k as usize]);
         // a corner points at a face only where a face around it makes more than 90° with that
-        let opposed = if self.corner().is_some() {
-            0.0
-        } else {
-            OPPOSED
+        let opposed = match self.corner() {
+            Some(_) => POINTED,
+            None => OPPOSED,
         };
         turned::until_opposed(corners, (around, height), opposed)
     }

@@ -176,8 +176,10 @@ impl Certificate {
         };
         let moves = |body: usize| system.mean_velocity(body, &start.v);
         let mut bodies = 0..system.bodies.len();
-        let first = moves(0);
-        if system.bodies.len() < 2 || bodies.all(|body| moves(body) == first) {
+        if bodies
+            .next()
+            .is_none_or(|first| bodies.all(|body| moves(body) == moves(first)))
+        {
             return Vec::new();
         }
         let mut certificate = Certificate::at(system, (0.0, &start));

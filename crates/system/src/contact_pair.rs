@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, Range};
 
-use carom_contact::{Contact, Friction};
+use carom_contact::{Contact, Friction, Target};
 use carom_mesh::Face;
 
 use crate::contacts::{is_of_many, renumbered, sides, touching};
@@ -51,6 +51,19 @@ impl Deref for ContactPair {
 }
 
 impl ContactPair {
+    /// Faces of the primary side, by system number; none of an obstacle.
+    pub fn primary_faces(&self) -> &[Face] {
+        self.contact.faces_of_primary(self.secondary_faces.len())
+    }
+
+    /// Faces whose nodes are its points, by system number: of the secondary side, or of both.
+    pub fn faces_of_points(&self) -> &[Face] {
+        match &self.target {
+            Target::Surface(faces) if self.looks_both_ways() => faces,
+            _ => &self.secondary_faces,
+        }
+    }
+
     /// The contacts of a model, from those by system number.
     ///
     /// # Errors

@@ -6,7 +6,8 @@ use carom_bodies::{Kinematics, height};
 use carom_contact::{Contact, Edges, Integration, Mortar, Point, Sight, Sliding, Target};
 use carom_mesh::{ElementId, Face, Mesh, Rim, SharpEdge, Surface};
 
-use crate::model::{Model, ModelContact, ModelTarget};
+use crate::both_ways::{self, DEPTH};
+use crate::model::{Model, ModelBody, ModelContact, ModelTarget};
 
 /// The body of a cell, in the order of the system.
 fn owner(model: &Model, cell: ElementId) -> Option<usize> {
@@ -109,19 +110,11 @@ pub(crate) fn numbered(
     number: &[u32],
     x: &[[f64; 3]],
 ) -> Contact {
+    if let Some(both_ways) = both_ways::numbered(contact, model, number, x) {
+        return both_ways;
+    }
     let surface = &contact.secondary;
-    let kinematics = surface
-        .faces
-        .first()
-        .and_then(|face| owner(model, face.parent));
-    // of a point mass a force stands for itself
-    let solid = kinematics.and_then(|body| model.bodies.get(body));
-    let kinematics = solid.map(|body| body.spec.kinematics);
-    let runs_along = surface.faces.first().is_some_and(is_axis);
-    let factor = |x: &[f64; 3]| match kinematics {
-        Some(Kinematics::Beam(section)) if runs_along => section.width(),
-        other => other.map_or(1.0, |k| k.surface_factor(x)),
-    };
+    let (solid, factor) = (body_of(model, surface), surface_factor(model, surface));
     let faces = |surface: &Surface| -> Vec<Face> {
         let faces = surface.faces.iter();
         faces.map(|face| renumbered(face, number)).collect()
@@ -196,6 +189,27 @@ pub(crate) fn numbered(
     }
 }
 
+/// The body of a surface; of a point mass none.
+fn body_of<'a>(model: &'a Model, surface: &Surface) -> Option<&'a ModelBody> {
+    let first = surface.faces.first();
+    model
+        .bodies
+        .get(first.and_then(|face| owner(model, face.parent))?)
+}
+
+/// Area in m² that a unit of the measure of the faces of a surface stands for at a place; of a point mass a force stands for itself.
+pub(crate) fn surface_factor(
+    model: &Model,
+    surface: &Surface,
+) -> impl Fn(&[f64; 3]) -> f64 + use<> {
+    let kinematics = body_of(model, surface).map(|body| body.spec.kinematics);
+    let runs_along = surface.faces.first().is_some_and(is_axis);
+    move |x: &[f64; 3]| match kinematics {
+        Some(Kinematics::Beam(section)) if runs_along => section.width(),
+        other => other.map_or(1.0, |k| k.surface_factor(x)),
+    }
+}
+
 /// Lines of the primary side that lines of the other side may cross, at nodes in space: axes of beams, and of two surfaces of which none faces itself also sharp edges of shells.
 fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
     let ModelTarget::Surface(other) = &contact.primary else {
@@ -210,9 +224,6 @@ fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
         false => Vec::new(),
     }
 }
-
-/// Part of the size of the elements at the edges beyond which edges of solids that are behind each other do not touch.
-const DEPTH: f64 = 0.25;
 
 /// Sharp edges of the solids of both sides of a contact, by the numbers of the mesh.
 struct SharpEdges {
@@ -229,7 +240,7 @@ fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
     };
     let at_nodes = contact.integration == Integration::Node;
     let slides = contact.sliding == Sliding::Finite;
-    if !(contact.edges && mesh.dim == 3 && at_nodes && slides) {
+    if !(contact.both_ways && mesh.dim == 3 && at_nodes && slides) {
         return None;
     }
     let surfaces = [&contact.secondary, primary];
@@ -237,14 +248,9 @@ fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
     if secondary.is_empty() || primary.is_empty() {
         return None;
     }
-    let least = |(surface, edges): (&Surface, &Vec<SharpEdge>)| {
-        let faces = edges.iter().flat_map(|edge| edge.faces);
-        let faces = faces.map(|face| &surface.faces[face as usize]);
-        let heights = faces.map(|face| height(mesh, face.parent, face.kind, face.corners()));
-        heights.fold(f64::INFINITY, f64::min)
-    };
     let sides = surfaces.into_iter().zip([&secondary, &primary]);
-    let least = sides.map(least).fold(f64::INFINITY, f64::min);
+    let least = sides.map(|(surface, edges)| least_height((surface, edges), mesh));
+    let least = least.fold(f64::INFINITY, f64::min);
     Some(SharpEdges {
         secondary,
         primary,
@@ -252,8 +258,16 @@ fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
     })
 }
 
+/// The least height of the cells at sharp edges of a surface over its faces, m; infinite without any.
+pub(crate) fn least_height((surface, edges): (&Surface, &[SharpEdge]), mesh: &Mesh) -> f64 {
+    let faces = edges.iter().flat_map(|edge| edge.faces);
+    let faces = faces.map(|face| &surface.faces[face as usize]);
+    let heights = faces.map(|face| height(mesh, face.parent, face.kind, face.corners()));
+    heights.fold(f64::INFINITY, f64::min)
+}
+
 /// The point of a sharp edge; it stands for a square of half its length.
-fn at_edge(edge: &SharpEdge, mesh: &Mesh, number: &[u32]) -> Point {
+pub(crate) fn at_edge(edge: &SharpEdge, mesh: &Mesh, number: &[u32]) -> Point {
     let half = 0.5 * edge.length(&mesh.nodes);
     let edge = edge.renumbered(|node| number[node as usize]);
     Point::at_edge(&edge, half * half)
@@ -277,7 +291,7 @@ fn crossing(axis: &Face) -> Point {
 }
 
 /// The points with their shares in the surface.
-fn shared(mut points: Vec<Point>) -> Vec<Point> {
+pub(crate) fn shared(mut points: Vec<Point>) -> Vec<Point> {
     let total: f64 = points.iter().map(|point| point.area).sum();
     for point in &mut points {
         point.share = point.area / total;
@@ -286,7 +300,7 @@ fn shared(mut points: Vec<Point>) -> Vec<Point> {
 }
 
 /// The nodes of a surface with the areas that they stand for, and the radii around them.
-fn nodes(
+pub(crate) fn nodes(
     surface: &Surface,
     mesh: &Mesh,
     number: &[u32],

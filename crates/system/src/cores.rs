@@ -45,7 +45,7 @@ pub enum CoreOwner {
 
 impl System {
     /// The cores of all bodies with cells, but for those whose elements are deleted, and of spheres and cylinders that bodies stay outside of. A
-    /// body in pieces has a core for each that shares no nodes with the others, not through other bodies either.
+    /// body in pieces has a core for each that shares no nodes with the others, not through other bodies either. None where there is one alone.
     ///
     /// A vertex of a solid is 1/20 of the size of its elements below the surface: `x + mean of α (c - x)` over the elements around it, c the middle of
     /// an element, α the depth over the part of the element that c is above a face. That of a shell or a beam is the node, from which
@@ -53,28 +53,31 @@ impl System {
     pub fn cores(&self) -> Vec<CoreOf> {
         let cells = self.bodies.iter().flat_map(|body| body.cells());
         let parts = Parts::new(&self.mesh, cells.copied());
-        let mut cores = Vec::new();
+        let mut pieces: BTreeMap<(usize, Option<u32>), Vec<ElementId>> = BTreeMap::new();
         for (number, body) in self.bodies.iter().enumerate() {
-            let mut pieces: BTreeMap<Option<u32>, Vec<ElementId>> = BTreeMap::new();
             for &cell in body.cells() {
                 let first = self.mesh.element_nodes(cell)[0];
-                pieces.entry(parts.of(first)).or_default().push(cell);
+                let piece = (number, parts.of(first));
+                pieces.entry(piece).or_default().push(cell);
             }
-            let of_pieces = pieces.values().filter_map(|cells| {
-                Some(CoreOf {
-                    core: self.core_of(body, cells)?,
-                    owner: CoreOwner::Body(number),
-                })
-            });
-            cores.extend(of_pieces);
         }
         let contacts = self.contacts.iter().enumerate();
         let shapes = contacts.filter_map(|(number, contact)| match &contact.target {
             Target::Rigid(obstacle) => self.core_of_shape(number, obstacle),
             Target::Surface(_) => None,
         });
-        cores.extend(shapes);
-        cores
+        let shapes: Vec<CoreOf> = shapes.collect();
+        // one alone meets nothing
+        if pieces.len() + shapes.len() < 2 {
+            return Vec::new();
+        }
+        let of_pieces = pieces.into_iter().filter_map(|((number, _), cells)| {
+            Some(CoreOf {
+                core: self.core_of(&self.bodies[number], &cells)?,
+                owner: CoreOwner::Body(number),
+            })
+        });
+        of_pieces.chain(shapes).collect()
     }
 
     fn core_of(&self, body: &Body, cells: &[ElementId]) -> Option<Core> {

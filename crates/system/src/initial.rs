@@ -94,8 +94,9 @@ impl System {
         let Target::Surface(target) = &self.contacts[contact].target else {
             return Vec::new();
         };
-        let own = &self.contacts[contact].secondary_faces;
-        if !Sight::is_needed(own, target) {
+        let pair = &self.contacts[contact];
+        let own = &pair.secondary_faces;
+        if pair.looks_both_ways() || !Sight::is_needed(own, target) {
             return Vec::new();
         }
         let numbers = own.iter().flat_map(|face| face.corners());

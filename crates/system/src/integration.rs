@@ -56,7 +56,7 @@ fn unfit_around_axes(contact: &Contact, secondary: &[Face], dim: usize) -> Optio
         _ if contact
             .sight
             .as_ref()
-            .is_some_and(|sight| !sight.is_of_itself()) =>
+            .is_some_and(|sight| !sight.has_both_sides()) =>
         {
             Some("a depth means nothing to surfaces around axes of beams and middles of shells")
         }

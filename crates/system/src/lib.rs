@@ -7,6 +7,7 @@ mod adaptive;
 mod assemblies;
 mod assembling;
 mod between;
+mod both_ways;
 mod build;
 mod checks;
 mod cliques;

@@ -377,8 +377,10 @@ pub struct ModelContact {
     pub depth: Option<f64>,
     /// Whether gaps of points that are far from what they face are not looked for, in implicit steps as in explicit ones.
     pub near_only: bool,
-    /// Whether sharp edges of solids touch that cross between their nodes: in space, at nodes, with finite sliding.
-    pub edges: bool,
+    /// Whether contact is looked for both ways: nodes of the primary surface are points too, and in space sharp edges of solids that cross between
+    /// their nodes. Of surfaces of solids, at nodes, with finite sliding; without deletion. Points that would tell what those of the other side tell
+    /// leave it to these, and forces count for the secondary side.
+    pub both_ways: bool,
     /// The bodies of the faces where a side has several, and which of them do not touch each other.
     pub parts: Option<Parts>,
     /// Duration of a flight that ends an impact, s; `None`: by waves and steps.
@@ -407,7 +409,7 @@ impl ModelContact {
             initial: Initial::Keep,
             depth: None,
             near_only: false,
-            edges: false,
+            both_ways: false,
             parts: None,
             moment_about: None,
             merge_within: None,

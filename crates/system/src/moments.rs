@@ -1,6 +1,6 @@
 //! Contacts whose moment is asked for: the point that it is about, and what belongs to the secondary side.
 
-use carom_contact::{Contact, Target};
+use carom_contact::Contact;
 use carom_mesh::Face;
 
 use crate::error::Error;
@@ -41,16 +41,14 @@ impl MomentAbout {
             return refuse("forces along a line and axisymmetric ones have no moment");
         }
         let mut secondary = vec![false; unknowns.len()];
-        let own = contact.points.iter().flat_map(|point| point.carriers());
+        let own = contact.points.iter().filter(|point| !point.is_on_primary());
+        let own = own.flat_map(|point| point.carriers());
         let of_faces = faces.iter().flat_map(|face| face.corners());
         for node in own.map(|(node, _)| node).chain(of_faces.copied()) {
             secondary[unknowns.of(unknowns.moved_by(node))].fill(true);
         }
-        let target = match &contact.target {
-            Target::Surface(faces) => &faces[..],
-            Target::Rigid(_) => &[],
-        };
-        let mut opposite = target.iter().flat_map(|face| face.corners());
+        let primary = contact.faces_of_primary(faces.len());
+        let mut opposite = primary.iter().flat_map(|face| face.corners());
         let shared = |&node: &u32| {
             let mut of = unknowns.of(unknowns.moved_by(node));
             of.any(|unknown| secondary[unknown])

@@ -17,7 +17,7 @@ pub(crate) fn points(contacts: &[ContactPair], x: &[[f64; 3]]) -> Vec<bool> {
         if contact.integration != Integration::Node {
             return vec![false; contact.points.len()];
         }
-        let nodes = sharp_nodes(&contact.secondary_faces, x);
+        let nodes = sharp_nodes(contact.faces_of_points(), x);
         let points = contact.points.iter();
         let is_sharp = points.map(|point| nodes.binary_search(&point.node()).is_ok());
         is_sharp.collect()

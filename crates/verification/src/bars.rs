@@ -259,7 +259,7 @@ impl Run {
                 depth: None,
                 moment_about: None,
                 near_only: false,
-                edges: false,
+                both_ways: false,
                 merge_within: None,
                 ..contact(secondary, primary, self.law)
             }],

@@ -6,7 +6,8 @@
 //! energy-momentum schemes with contact (two tori of these data); the place of the second torus there was not at hand, and
 //! is ours.
 //! Tolerances: momenta 1e-10 and energy 1e-8, as the issue states; iterations end at 1e-11 of the forces, and 1e-13 is found. That the collision is
-//! a large one shows in the strain energy. Iterations: 6 a step, as the issue states, and quadratic as those of Newton's method are. Attempts: a regression, a tenth above what was found (1).
+//! a large one shows in the strain energy. Iterations: 6 a step, as the issue states, and quadratic as those of Newton's method are. Attempts: a regression, a tenth above what was found (1), without those of steps
+//! that are cut where a point passes what it faces; cuts likewise (0.06: 12 in 200 steps).
 //! Sizes: quick 1 x 8 x 24 hexahedra in each torus, the first 20 steps; full 1 x 16 x 48, 9216 unknowns.
 
 use carom_bodies::Kinematics;
@@ -61,14 +62,17 @@ pub(crate) const CHECK: Check = Check {
             iterations.follow(&newton);
             attempts += report.attempts as usize;
         }
+        // a cut drops one attempt and puts two in its place
+        let cuts = newton.state().control.passed as f64;
+        let aside = attempts as f64 - 2.0 * cuts;
         let mut rows = vec![
             Row::at_most("change of momentum, relative", kept.linear, 1e-10),
             Row::at_most("change of angular momentum, relative", kept.angular, 1e-10),
             Row::at_most("change of energy, relative", kept.energy, 1e-8),
             Row::at_least("most points with a force", closed as f64, 2.0),
             Row::at_least("largest strain energy / energy", strained, strain),
-            // steps that are cut where a point passes what it faces have two more attempts each
-            Row::at_most("attempts a step", attempts as f64 / steps as f64, 1.2).regression(),
+            Row::at_most("attempts a step, cuts aside", aside / steps as f64, 1.1).regression(),
+            Row::at_most("cuts a step", cuts / steps as f64, 0.066).regression(),
         ];
         rows.extend(iterations.rows("energy-momentum", 6.0));
         rows.push(iterations.quadratic("energy-momentum"));

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use carom_contact::{Initial, Integration, Parts, Sliding};
+use carom_contact::{Initial, Integration, Part as PartOfFace, Parts, Sliding};
 use carom_dynamics::{ModelContact, ModelTarget};
 use carom_mesh::{ElementId, Surface};
 
@@ -212,6 +212,11 @@ fn between(
     let deletes = [one, other]
         .iter()
         .any(|part| part.body.spec.deletion.is_some());
+    let plan = scope.context.plan;
+    let zones = [one, other].map(|part| plan.zone_of(part.bodies[0]));
+    let both_ways = (itself || zones[0] == zones[1])
+        && !quadratic
+        && [one, other].iter().all(|part| part.is_solid());
     let parts = many.then(|| apart.parts((secondary, primary), |body| folds(&scope.bodies[body])));
     Some(ModelContact {
         parts,
@@ -223,10 +228,7 @@ fn between(
         friction: friction.unwrap_or_default(),
         initial: Initial::Touch,
         near_only: !deletes,
-        edges: given.by == GeneralBy::Materials
-            && scope.mesh.dim == 3
-            && !deletes
-            && [one, other].iter().all(|part| part.is_solid()),
+        both_ways: both_ways && !deletes,
         // surfaces around axes and middles have none, one that faces itself has its own
         depth: match round {
             true => None,
@@ -239,15 +241,11 @@ fn between(
 impl Apart {
     /// The parts of a contact whose sides have several bodies. `folds`: whether a body may touch itself.
     fn parts(&self, (secondary, primary): (&Part, &Part), folds: impl Fn(usize) -> bool) -> Parts {
-        let of = |part: &Part| -> Vec<u32> {
+        let of = |part: &Part| -> Vec<PartOfFace> {
             let faces = part.surface.faces.iter();
-            faces
-                .map(|face| {
-                    self.owners
-                        .get(&face.parent)
-                        .map_or(u32::MAX, |&body| body as u32)
-                })
-                .collect()
+            let owners = faces.map(|face| self.owners.get(&face.parent));
+            let numbers = owners.map(|body| body.map_or(u32::MAX, |&body| body as u32));
+            numbers.map(PartOfFace::of).collect()
         };
         let itself = secondary.bodies == primary.bodies;
         let has = |body: &usize| {

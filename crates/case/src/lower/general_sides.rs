@@ -212,8 +212,11 @@ fn outside(side: Surface, joints: &Joints) -> Result<Surface, &'static str> {
     }
 }
 
-/// Whether a body moves so much that it may touch itself.
+/// Whether a body changes its shape so much that it may touch itself.
 pub(super) fn folds(body: &ModelBody) -> bool {
+    if body.rigid.is_some() {
+        return false;
+    }
     let turns = body.spec.kinematics.rotations() == Some(Rotations::Finite);
     turns || body.spec.kinematics.rotations().is_none() && body.spec.material.finite().is_some()
 }

@@ -37,12 +37,14 @@ fn two_blocks_meet_as_under_a_contact_of_their_sides() {
     ];
     let largest = force.iter().fold(0.0_f64, |m, f| m.max(*f));
     assert!(largest > 0.0);
-    // the sides that meet are the same faces, and the others are never near: the same equations up to the order of points
+    // the sides that meet are the same faces, and the others are never near; but the general contact looks both ways: at the corners of the offset
+    // blocks the node of the other side is a point too, one of nine along a side of nine nodes
     for (one, other) in force.iter().zip(of_all) {
-        assert!((one - other).abs() < 1e-9 * largest, "{one} {other}");
+        assert!((one - other).abs() < 0.12 * largest, "{one} {other}");
     }
     let [one, other] = [&one.contacts["c"], &other.contacts["all-a-b"]];
-    assert!((one.impulse.unwrap() / other.impulse.unwrap() - 1.0).abs() < 1e-9);
+    // equal blocks, of which one was at rest: the momentum passed over is that of the mean motion in both
+    assert!((one.impulse.unwrap() / other.impulse.unwrap() - 1.0).abs() < 0.02);
     assert_eq!(one.impacts, other.impacts);
 }
 
@@ -170,17 +172,15 @@ fn two_blocks_meet_in_the_contact_of_their_material() {
     };
     let [(one, pair), (other, whole)] = ["bodies", "materials"].map(by);
     assert_eq!(other.contacts.keys().collect::<Vec<_>>(), ["all-m"]);
-    // the points of the side with the lower rank tell the contact, those of the other leave it to them, as the primary side does
     let (apart, largest) = most_apart(
         &pair["contact.all_a_b.force_n"],
         &whole["contact.all_m.force_n"],
     );
     assert!(largest > 0.0);
-    // but at the corners of the offset block, whose nodes stand before faces of the other: one of nine along a side of nine nodes
-    assert!(apart < 0.12, "{apart}");
+    // both look both ways, and the blocks do not touch themselves: the same equations up to the order of points
+    assert!(apart < 1e-9, "{apart}");
     let [one, other] = [&one.contacts["all-a-b"], &other.contacts["all-m"]];
-    // equal blocks, of which one was at rest: the momentum passed over is that of the mean motion in both
-    assert!((one.impulse.unwrap() / other.impulse.unwrap() - 1.0).abs() < 0.02);
+    assert!((one.impulse.unwrap() / other.impulse.unwrap() - 1.0).abs() < 1e-9);
 }
 
 /// A row of `count` blocks that lie beside each other a little apart, the first one moving.
@@ -212,9 +212,9 @@ fn points(text: &str) -> usize {
 fn contacts_of_materials_grow_with_the_faces_and_those_of_bodies_with_the_pairs() {
     let general = |by: &str| format!(r#"general-contact = {{ law.velocity = {{}}, by = "{by}" }}"#);
     let [whole, pairs] = ["materials", "bodies"].map(general);
-    // 16 nodes around each block, each a point of the one contact; of pairs 16 for each
+    // 16 nodes around each block, each a point of the one contact; of pairs 16 on each side
     assert_eq!(points(&row(12, &whole)), 12 * 16);
-    assert_eq!(points(&row(12, &pairs)), 16 * (12 * 11 / 2));
+    assert_eq!(points(&row(12, &pairs)), 2 * 16 * (12 * 11 / 2));
 }
 
 #[test]

@@ -393,7 +393,7 @@ impl Contact {
             pairing.keep(at, point.area, reach.near);
         }
         // bounds of distances leave sight out
-        match pairing.near.len() > kept || self.faces_itself() {
+        match pairing.near.len() > kept || self.has_both_sides() {
             true => 0.0,
             false => self.mortar_clearance(places, search, reach.watched),
         }

@@ -41,6 +41,7 @@ impl Contact {
                 self.each_opposite((places, faces), search, |k, found| match found {
                     Some(Opposite { point, foot, face }) => {
                         rows.push(foot.gap + offset(k), foot.normal);
+                        rows.set_resultant(point.on_secondary(foot.normal));
                         add_row(places, &point, &foot, face, rows);
                     }
                     None => rows.push(f64::INFINITY, [0.0; 3]),

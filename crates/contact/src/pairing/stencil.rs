@@ -121,11 +121,13 @@ impl Stencil {
         let dim = places.dim();
         rows.begin(at, self.gap, self.normal);
         let turning = self.turning();
-        rows.set_resultant(self.resultant(turning.as_ref()).into());
+        let resultant = self.resultant(turning.as_ref()).into();
+        rows.set_resultant(self.point.on_secondary(resultant));
         rows.set_rate(self.rate(&self.normal));
         let frame = tangent_vectors(&self.normal, dim);
         for (rows, t) in tangents.iter_mut().zip(&frame[..dim - 1]) {
             rows.begin(at, 0.0, *t);
+            rows.set_resultant(self.point.on_secondary(*t));
             rows.set_rate(self.slide(t));
         }
         let tangents = &mut tangents[..dim - 1];

@@ -199,3 +199,58 @@ fn a_node_deep_in_a_thin_plate_is_pushed_back_to_the_side_it_came_from() {
         assert_eq!(rows.normal(point), [0.0, 1.0, 0.0]);
     }
 }
+
+/// The ridge of a sharp wedge along a plane: all its nodes see the plane, though the middle one is pressed up by a thousandth of an edge. The normals
+/// of its faces make 101° with that of the plane: neither is turned against it.
+#[test]
+fn all_nodes_of_a_ridge_see_what_it_points_at() {
+    let (half, height) = (0.2, 1.0);
+    let mut x = Vec::new();
+    for k in 0..3 {
+        let y = f64::from(k) - 1.0;
+        x.extend([
+            [0.0, y, 0.1],
+            [half, y, 0.1 + height],
+            [-half, y, 0.1 + height],
+        ]);
+    }
+    x[3][2] += 1e-3;
+    let floor = x.len() as u32;
+    x.extend([
+        [-2.0, -2.0, 0.0],
+        [2.0, -2.0, 0.0],
+        [2.0, 2.0, 0.0],
+        [-2.0, 2.0, 0.0],
+    ]);
+    let flank = |k: u32| {
+        let (one, next) = (3 * k, 3 * (k + 1));
+        [
+            face(Kind::Quad4, &[one, next, next + 1, one + 1]),
+            face(Kind::Quad4, &[one, one + 2, next + 2, next]),
+        ]
+    };
+    let flanks: Vec<Face> = (0..2).flat_map(flank).collect();
+    let target = vec![face(Kind::Quad4, &[floor, floor + 1, floor + 2, floor + 3])];
+    let points: Vec<Point> = (0..3).map(|k| Point::at_node(3 * k, 1.0, 1.0)).collect();
+    let sight = Sight::new((&points, &flanks), &target, &x, Some(0.5));
+    let mut contact = contact(points, Target::Surface(target));
+    contact.sight = Some(sight);
+    let unknowns = Unknowns::translations(3, x.len());
+    let u = vec![0.0; 3 * x.len()];
+    let places = Places {
+        unknowns: &unknowns,
+        time: 0.0,
+        x: &x,
+        u: &u,
+        frames: Frames::default(),
+    };
+    let mut rows = Rows::default();
+    contact.pair(&places, &mut Search::default(), &mut rows);
+    for (point, gap) in [0.1, 0.101, 0.1].into_iter().enumerate() {
+        assert!(
+            (rows.gap(point) - gap).abs() < 1e-15,
+            "{point}: {}",
+            rows.gap(point)
+        );
+    }
+}

@@ -16,7 +16,7 @@ impl Driver {
     }
 
     fn attempt_to_the_end(&mut self, dt: f64, next: f64) -> Result<(), Error> {
-        self.contacts.forget_failures();
+        self.contacts.begin_attempt();
         self.parts.return_to_iterations();
         self.contacts.renew_targets(&self.attempt);
         self.attempt.hide_followed();

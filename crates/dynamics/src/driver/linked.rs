@@ -170,7 +170,7 @@ impl Driver {
     /// # Errors
     /// As [`Driver::step`].
     pub fn prepare(&mut self) -> Result<(), Error> {
-        self.contacts.forget_failures();
+        self.contacts.begin_attempt();
         self.parts.set_prepared(false);
         self.begin_stage()?;
         let scheme = self.attempt.system.scheme.get();

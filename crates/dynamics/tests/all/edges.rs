@@ -76,7 +76,7 @@ fn sheared(secondary: usize) -> Driver {
             depth: None,
             moment_about: None,
             near_only: false,
-            edges: false,
+            both_ways: false,
             merge_within: None,
             parts: None,
         }],

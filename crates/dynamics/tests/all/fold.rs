@@ -79,7 +79,7 @@ fn pressed([depth, way]: [f64; 2], sight: (Option<f64>, bool)) -> Driver {
             depth: sight.0,
             moment_about: None,
             near_only: sight.1,
-            edges: false,
+            both_ways: false,
             merge_within: None,
             parts: None,
         }],

@@ -52,9 +52,10 @@ impl Crossings {
         self.certificate.as_ref()
     }
 
-    /// What passed through each other.
-    pub(crate) fn all(&self) -> impl Iterator<Item = &Crossing> {
+    /// Those that passed through each other and are of some kind.
+    pub(crate) fn those(&self, is: impl Fn(&Crossing) -> bool) -> Vec<&Crossing> {
         let told = self.certificate.iter().map(Certificate::told);
-        told.flat_map(|told| &told.crossings)
+        let all = told.flat_map(|told| &told.crossings);
+        all.filter(|crossing| is(crossing)).collect()
     }
 }

@@ -348,7 +348,7 @@ impl SurfaceGrid {
         };
         let mut cells = Vec::new();
         for kind in Kind::ALL {
-            let faces = system.contacts[contact].secondary_faces.iter();
+            let faces = system.contacts[contact].faces_of_points().iter();
             let of_kind = faces.filter_map(|face| shown(face, &place));
             let of_kind = of_kind.filter(|(shown, _)| *shown == kind);
             let nodes: Vec<u32> = of_kind.flat_map(|(_, nodes)| nodes).collect();

@@ -104,9 +104,16 @@ pub fn contact_point(
         Target::Rigid(_) => None,
         Target::Surface(faces) => {
             let corners = faces.iter().flat_map(|face| face.corners().iter().copied());
-            let found = nearest(system, corners, &place);
-            // of a surface that faces itself both would be the same node
-            found.filter(|&node| node != secondary)
+            // of a surface that faces itself both would be the same node, or neighbours
+            let part =
+                |node: u32| system.part_of(system.unknowns.first(system.unknowns.moved_by(node)));
+            let own = contact.has_both_sides().then(|| part(secondary));
+            nearest(
+                system,
+                corners.filter(|&node| own != Some(part(node))),
+                &place,
+            )
+            .filter(|&node| node != secondary)
         }
     };
     let axis = match reference {
@@ -147,8 +154,11 @@ fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>)
     rows.clear();
     let contact = &system.contacts[contact];
     contact.pair(&places, &mut Search::default(), &mut rows);
-    let point = contact.points.iter().position(|p| p.node() == secondary);
-    let mut n = point.map_or([0.0; 3], |point| rows.normal(point));
+    let points = contact.points.iter().enumerate();
+    let mut normals = points
+        .filter(|(_, point)| point.node() == secondary)
+        .map(|(point, _)| rows.normal(point));
+    let mut n = normals.find(|n| *n != [0.0; 3]).unwrap_or_default();
     if let Some(primary) = primary.filter(|_| n == [0.0; 3]) {
         n = [0, 1, 2].map(|i| system.x[primary as usize][i] - system.x[secondary as usize][i]);
     }

@@ -1,7 +1,5 @@
 //! Which points may carry a force in an iteration.
 
-use std::sync::Arc;
-
 use carom_contact::law::Status;
 
 use super::Contacts;
@@ -23,17 +21,28 @@ impl Contacts {
         self.candidates.clear();
     }
 
-    /// Leaves out points whose contact those opposite to them tell, where forces of both would hardly move anything apart.
-    fn leave_to_others(&mut self, attempt: &Attempt) {
-        let (system, pairing) = (Arc::clone(&attempt.system), &self.pairing);
-        let chosen = &attempt.next.interface.watched;
-        self.candidates.retain(|&point| {
-            let number = system.contact_of(point as usize);
-            let contact = as_narrowed(&self.narrowed, &system, number);
-            let first = system.contacts[number].range.start;
-            let takes_part = |other: usize| chosen[first + other];
-            !contact.leaves_it((pairing, first), point as usize - first, takes_part)
-        });
+    /// Whether a point may leave its contact to those opposite to it that are watched: forces of both would hardly move anything apart.
+    fn may_leave(&self, attempt: &Attempt, point: u32) -> bool {
+        let (system, chosen) = (&attempt.system, &attempt.next.interface.watched);
+        let number = system.contact_of(point as usize);
+        let contact = as_narrowed(&self.narrowed, system, number);
+        let first = system.contacts[number].range.start;
+        let takes_part = |other: usize| chosen[first + other];
+        contact.leaves_it((&self.pairing, first), point as usize - first, takes_part)
+    }
+
+    /// Leaves out candidates, from a place of them on, that leave their contact to others.
+    fn leave_to_others(&mut self, attempt: &Attempt, from: usize) {
+        let mut kept = from;
+        for place in from..self.candidates.len() {
+            let point = self.candidates[place];
+            let may_leave = self.may_leave(attempt, point);
+            if !self.telling.leaves(point, may_leave) {
+                self.candidates[kept] = point;
+                kept += 1;
+            }
+        }
+        self.candidates.truncate(kept);
     }
 
     /// Makes the candidates those at some places, to be told of.
@@ -92,9 +101,7 @@ impl Contacts {
             }
         }
         self.active = active;
-        if attempt.maps.is_explicit() {
-            self.leave_to_others(attempt);
-        }
+        self.leave_to_others(attempt, 0);
     }
 
     pub(crate) fn approaches(&self, parts: &Parts, attempt: &Attempt, point: usize) -> bool {
@@ -132,6 +139,7 @@ impl Contacts {
             }
         }
         self.active = active;
+        self.leave_to_others(attempt, before);
         self.candidates.sort_unstable();
         self.candidates.len() > before
     }

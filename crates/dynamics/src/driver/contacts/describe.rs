@@ -30,7 +30,7 @@ impl Contacts {
             area: carrier.area,
             share: carrier.share,
             tolerance: attempt.system.tolerance_at(point),
-            faces_itself: contact.faces_itself(),
+            faces_itself: contact.has_both_sides(),
             crush: attempt.state.interface.crush[point],
             gap: match attempt.between() {
                 // S_d looks at the start of the step

@@ -86,10 +86,7 @@ impl Far {
     /// Takes in the sides of a contact, if it does not look for what is far.
     fn reach_of(&mut self, system: &System, number: usize) -> Option<Reach> {
         let contact = &system.contacts[number];
-        let Target::Surface(faces) = &contact.target else {
-            return None;
-        };
-        if !contact.near_only {
+        if !contact.near_only || matches!(contact.target, Target::Rigid(_)) {
             return None;
         }
         let (_, spread) = contact.nodes();
@@ -97,9 +94,11 @@ impl Far {
             true => [Owner::Contact(number); 2],
             false => [contact.secondary_body, contact.primary_body?].map(Owner::Body),
         };
-        let own = contact.points.iter().flat_map(|point| point.carriers());
+        let own = contact.points.iter().filter(|point| !point.is_on_primary());
+        let own = own.flat_map(|point| point.carriers());
         let own: Vec<u32> = own.map(|(node, _)| node).collect();
-        let other = faces.iter().flat_map(|face| face.corners()).copied();
+        let other = contact.primary_faces().iter();
+        let other = other.flat_map(|face| face.corners()).copied();
         let bulge = 0.5 * (spread - 1.0);
         let sides = [
             self.side(secondary, bulge, own.into_iter()),

@@ -26,6 +26,7 @@ mod refine;
 mod solve;
 pub(crate) mod span;
 pub(crate) mod tangents;
+mod telling;
 pub(crate) mod weak;
 
 use std::cell::RefCell;
@@ -50,6 +51,7 @@ use closings::Closings;
 use far::Far;
 use passage::Passage;
 use rebound::Rebound;
+use telling::Telling;
 use weak::{WeakForms, WithWeak};
 
 /// Contacts: search, pairing, points that may carry a force, their laws, the problems of forces and friction, what they did.
@@ -81,6 +83,7 @@ pub(crate) struct Contacts {
     rebound: Rebound,
     /// Points that may carry a force, ascending.
     candidates: Vec<u32>,
+    telling: Telling,
     candidate_data: CandidateData,
     /// Gaps of the candidates at the end of the step without any contact force, m; of an adaptive step.
     free_gaps: Vec<f64>,
@@ -121,6 +124,7 @@ impl Contacts {
             closings: Closings::of(system),
             rebound: Rebound::of(system),
             candidates: Vec::new(),
+            telling: Telling::default(),
             candidate_data: CandidateData::default(),
             free_gaps: Vec::new(),
             weak: WeakForms::new(system)?,
@@ -192,9 +196,10 @@ impl Contacts {
         normal.or(friction.map(FailedProblem::Friction))
     }
 
-    /// Begins an attempt in which no problem has failed yet.
-    pub(crate) fn forget_failures(&mut self) {
+    /// Begins an attempt, in which no problem has failed and no point has left its contact yet.
+    pub(crate) fn begin_attempt(&mut self) {
         (self.failed, self.failed_friction) = (None, None);
+        self.telling.begin();
     }
 
     /// Forgets which points have passed what they face.

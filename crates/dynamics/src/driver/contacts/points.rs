@@ -356,7 +356,8 @@ impl Contacts {
         let largest = forces.fold(0.0_f64, |most, force| most.max(force.abs()));
         let mut worst: Option<(usize, f64)> = None;
         for point in points {
-            if self.told(attempt, point) == Some(false) {
+            let has_left = || self.telling.has_left(point as u32);
+            if self.told(attempt, point) == Some(false) || has_left() {
                 continue;
             }
             let (gap, rate) = self.weakly(attempt, point, self.now(attempt, point, true));

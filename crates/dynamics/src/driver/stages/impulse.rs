@@ -132,7 +132,7 @@ impl Impulses {
         for (i, value) in values.iter().enumerate() {
             let row = &d[i * n..(i + 1) * n];
             self.candidates.push(Candidate {
-                faces_itself: system.point(points[i] as usize).0.faces_itself(),
+                faces_itself: system.point(points[i] as usize).0.has_both_sides(),
                 ..Candidate::beside(*value, row, present)
             });
         }

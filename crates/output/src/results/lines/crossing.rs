@@ -82,10 +82,8 @@ pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
     if !certificate.looks(evidence.system) {
         return Finding::Absent;
     }
-    let crossed = evidence.crossings.all();
-    let crossed: Vec<&Crossing> = crossed
-        .filter(|crossing| crossing.contact.is_some() && !crossing.held)
-        .collect();
+    let crossings = &evidence.crossings;
+    let crossed = crossings.those(|crossing| crossing.contact.is_some() && !crossing.held);
     let of = match crossed.first() {
         None => format!(
             "{} pairs of nodes, edges and faces tested, {} steps cut",
@@ -113,11 +111,7 @@ pub(super) fn under_force(evidence: &Evidence) -> Finding {
     let Some(certificate) = evidence.crossings.certificate() else {
         return Finding::Absent;
     };
-    let deep: Vec<&Crossing> = evidence
-        .crossings
-        .all()
-        .filter(|crossing| crossing.held)
-        .collect();
+    let deep = evidence.crossings.those(|crossing| crossing.held);
     let Some(first) = deep.first() else {
         return Finding::Absent;
     };
@@ -190,9 +184,9 @@ pub(super) fn when_and_where(
 ) -> String {
     let names = certificate.names(evidence.system, crossing.of);
     let place = &crossing.place[..evidence.system.dim];
-    let place: Vec<String> = place.iter().map(|x| format!("{x:.4}")).collect();
+    let place: Vec<String> = place.iter().map(|x| quantity(*x, "m")).collect();
     format!(
-        "{names} at {}, at ({}) m",
+        "{names} at {}, at ({})",
         quantity(crossing.time, "s"),
         place.join(", ")
     )

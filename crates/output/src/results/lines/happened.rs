@@ -1,6 +1,5 @@
 //! What moved and what met: a run in which nothing happened that was asked about is not good.
 
-use carom_dynamics::Crossing;
 use carom_pages::form::Form;
 
 use crate::results::lines::crossing::when_and_where;
@@ -49,8 +48,9 @@ pub(super) fn met(evidence: &Evidence) -> Finding {
     if !certificate.looks(system) {
         return Finding::Absent;
     }
-    let met = evidence.crossings.all();
-    let met: Vec<&Crossing> = met.filter(|crossing| crossing.contact.is_none()).collect();
+    let met = evidence
+        .crossings
+        .those(|crossing| crossing.contact.is_none());
     let quantity = match met.first() {
         None => "pairs of bodies that met with nothing between them".to_owned(),
         Some(first) => format!(

@@ -61,6 +61,7 @@ const ALL: &[fn(&Evidence) -> Finding] = &[
     crossing::left_open,
     rebound::of_rigid_bodies,
     rebound::under_the_law_in_the_gap,
+    rebound::of_many_rigid_bodies,
     resolution::of_peaks,
     resolution::of_impulses,
     patches::of_contacts,

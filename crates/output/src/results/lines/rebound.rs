@@ -65,6 +65,22 @@ pub(super) fn under_the_law_in_the_gap(evidence: &Evidence) -> Finding {
     }
 }
 
+/// Contacts of many rigid bodies that closed: what two of them do to each other is not told apart, nor whether the law took what it takes.
+pub(super) fn of_many_rigid_bodies(evidence: &Evidence) -> Finding {
+    let (system, records) = (evidence.system, &evidence.last.records);
+    let mut contacts = system.contacts.iter().zip(&records.contacts).enumerate();
+    let open = contacts.find(|(number, (pair, record))| {
+        pair.is_of_many && record.first_closing.is_some() && restitution(system, *number).is_some()
+    });
+    match open {
+        Some((_, (pair, _))) => Finding::Unchecked(format!(
+            "the speeds at which the rigid bodies of contact `{}` part: it is of many bodies, and no two are told apart; [general-contact] with by = \"bodies\" or contacts by name tell",
+            pair.name
+        )),
+        None => Finding::Absent,
+    }
+}
+
 /// The coefficient of restitution that the law of a contact has, where it has one and all bodies are rigid.
 fn restitution(system: &System, contact: usize) -> Option<f64> {
     let pair = &system.contacts[contact];

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use carom_contact::Target;
 use carom_dynamics::System;
 use carom_elements::Kind;
 use carom_pages::page::block::Block;
@@ -68,10 +67,7 @@ pub(super) fn contacts(system: &System, of: (&Seen, &Chosen), block: &mut Block)
     let both = system.contacts.iter().map(|contact| Sides {
         name: contact.name.clone(),
         secondary: side(&contact.secondary_faces),
-        primary: match &contact.target {
-            Target::Surface(faces) => side(faces),
-            Target::Rigid(_) => side(&[]),
-        },
+        primary: side(contact.primary_faces()),
     });
     both.collect()
 }
