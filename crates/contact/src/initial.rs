@@ -1,6 +1,8 @@
 //! Surfaces that overlap before anything has moved, and what is done about it.
 
-use crate::{Contact, Near, Pairing, Places, Search, Sliding};
+use carom_mesh::{Bounds, Face};
+
+use crate::{Contact, Near, Pairing, Places, Point, Search, Sliding, Target};
 
 /// What is done about points that penetrate at the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -91,6 +93,9 @@ impl Contact {
 
     /// The points with a gap below `-slack` around which some place, or no place, is as deep.
     fn below(&self, places: &Places, slack: f64, deep: bool) -> Vec<Penetration> {
+        if self.is_apart(places) {
+            return Vec::new();
+        }
         let pairing = self.pair_deep(places);
         let rows = &pairing.rows;
         let below = (0..rows.len()).filter(|&point| rows.gap(point) < -slack);
@@ -107,6 +112,34 @@ impl Contact {
 }
 
 impl Contact {
+    /// Whether no point can be as deep as it may, since the boxes of both sides are apart by more.
+    fn is_apart(&self, places: &Places) -> bool {
+        let (Some(sight), Target::Surface(faces)) = (&self.sight, &self.target) else {
+            return false;
+        };
+        let both = self.looks_both_ways();
+        let flat = |face: &Face| !face.kind.table().is_quadratic();
+        if self.mortar.is_some() || sight.has_both_sides() && !both || !faces.iter().all(flat) {
+            return false;
+        }
+        let of_points = |on_primary: bool| {
+            let points = self.points.iter();
+            let own = points.filter(move |point| point.is_on_primary() == on_primary);
+            let nodes = own.flat_map(Point::carriers);
+            nodes.map(|(node, _)| places.of(node)).collect()
+        };
+        let own: Vec<[f64; 3]> = of_points(false);
+        let other = match both {
+            true => of_points(true),
+            false => {
+                let nodes = faces.iter().flat_map(Face::corners);
+                nodes.map(|&node| places.of(node)).collect()
+            }
+        };
+        let [own, other] = [own, other].map(|places| Bounds::of(&places));
+        own.apart(&other) > sight.deepest() + self.thickest()
+    }
+
     /// A pairing that has at least the points that penetrate: with a sight nothing counts that is deeper than its depth.
     fn pair_deep(&self, places: &Places) -> Pairing {
         let (mut pairing, mut search) = (Pairing::default(), Search::default());

@@ -36,7 +36,7 @@ pub(super) fn lower(scope: &Scope, problems: &mut Problems) -> Vec<ModelContact>
     check_pairs(scope.context, given, problems);
     let mut parts = general_sides::parts(scope, problems);
     let apart = kept_apart(scope, &parts);
-    if given.by == GeneralBy::Materials {
+    if takes_materials(given, parts.len(), problems) {
         parts = general_sides::by_materials(scope, parts, problems);
     }
     let mut contacts = Vec::new();
@@ -58,6 +58,20 @@ pub(super) fn lower(scope: &Scope, problems: &mut Problems) -> Vec<ModelContact>
         ));
     }
     contacts
+}
+
+/// Whether one contact takes all bodies of two materials: where the case says so, and where it says nothing and bodies are many.
+fn takes_materials(given: &GeneralContact, bodies: usize, problems: &mut Problems) -> bool {
+    let pairs = bodies * bodies.saturating_sub(1) / 2;
+    if given.by.is_none() && pairs > MANY {
+        problems.warn(format!(
+            "general-contact: {pairs} pairs of bodies, so one contact takes all bodies of two materials; by = \"bodies\" tells what each two do to each other, with a search each"
+        ));
+    }
+    match given.by {
+        Some(by) => by == GeneralBy::Materials,
+        None => pairs > MANY,
+    }
 }
 
 /// What is in no contact with each other.

@@ -74,26 +74,24 @@ pub struct GeneralContact {
     /// Largest penetration that counts as contact. Default: the least thickness of a cell at the outer sides of the two bodies. It means
     /// nothing to shells and beams.
     pub depth: Option<Length>,
-    /// What has a contact, with results of its own.
-    #[serde(default)]
-    pub by: GeneralBy,
+    /// What has a contact, with results of its own. Default: `bodies` up to 100 pairs of bodies, as of 14, `materials` beyond.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<GeneralBy>,
     /// What is different between two materials.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub pairs: Vec<MaterialPair>,
 }
 
 /// What has a contact of the general contact.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum GeneralBy {
     /// Each two bodies, `all-a-b` of the bodies `a` and `b`: forces, impulses and restitution of each pair. Memory and time grow with the square of the
     /// number of bodies.
-    #[default]
     Bodies,
     /// Each two materials, `all-m-n` of the materials `m` and `n`, `all-m` of all bodies of one: one search over all their sides, memory in
     /// proportion to their faces. What two bodies do to each other is not told apart. Bodies of one material have contacts of their own
-    /// where their sections, their zones or their rotations differ, and where cells are deleted. Sharp edges of solids touch that cross between their
-    /// nodes. Shells of one contact do not meet edge on edge.
+    /// where their sections, their zones or their rotations differ, and where cells are deleted. Shells of one contact do not meet edge on edge.
     Materials,
 }
 
