@@ -3,7 +3,7 @@
 use carom_mesh::Projection;
 
 use crate::crossing::{Opposite, between};
-use crate::edges::{Line, Meeting, ends_of, meeting, ordered};
+use crate::edges::{Meeting, ends_of, meeting, ordered};
 use crate::search::faces::FaceTree;
 use crate::{Contact, Places};
 
@@ -25,7 +25,8 @@ impl Contact {
             xi: [found.xi[1], 0.0, 0.0],
             point: found.place,
             normal: found.normal,
-            gap: found.gap,
+            // rows take the radius of the point themselves
+            gap: found.gap + self.points[point].radius,
             distance: found.gap.abs(),
             inside: true,
         };
@@ -44,10 +45,10 @@ impl Contact {
         within: f64,
     ) -> Option<f64> {
         let (edges, own) = (self.edges.as_ref()?, self.points[point].edge()?);
-        let line = Line::new(places, own, edges.own[point]);
+        let line = edges.line_of(places, (&self.points[point], point))?;
         let view = self.view(point);
         let (middle, half) = line.middle();
-        let measure = |item: u32| match edges.is_beside(item, (&own[0], view)) {
+        let measure = |item: u32| match edges.is_beside(item, (&own.ends, view)) {
             true => f64::INFINITY,
             false => between(&line.ends, &edges.line(places, item).ends).distance,
         };
@@ -96,11 +97,13 @@ impl Contact {
         let (Some(edges), Some(own)) = (&self.edges, self.points[point].edge()) else {
             return Vec::new();
         };
-        let line = Line::new(places, own, edges.own[point]);
+        let Some(line) = edges.line_of(places, (&self.points[point], point)) else {
+            return Vec::new();
+        };
         let view = self.view(point);
         let (middle, half) = line.middle();
         let near = tree.near(&middle, half + limit + 2.0 * motion).into_iter();
-        let others = near.filter(|&item| !edges.is_beside(item, (&own[0], view)));
+        let others = near.filter(|&item| !edges.is_beside(item, (&own.ends, view)));
         let with_rest = others.map(|item| {
             let apart = between(&line.ends, &edges.line(places, item).ends).distance;
             (item, (0.5 * (apart - limit)).max(0.0))
@@ -116,10 +119,10 @@ impl Contact {
         within: f64,
     ) -> Option<(u32, Meeting)> {
         let (edges, own) = (self.edges.as_ref()?, self.points[point].edge()?);
-        let line = Line::new(places, own, edges.own[point]);
+        let line = edges.line_of(places, (&self.points[point], point))?;
         let view = self.view(point);
         let (middle, half) = line.middle();
-        let at = |item: u32| match edges.is_beside(item, (&own[0], view)) {
+        let at = |item: u32| match edges.is_beside(item, (&own.ends, view)) {
             true => None,
             false => meeting(&line, &edges.line(places, item), edges.depth),
         };
@@ -145,7 +148,7 @@ impl Contact {
         };
         let is_own = |item: u32| {
             let own = self.points[point].edge();
-            own.is_some_and(|[ends, _]| ordered(ends) == ends_of(&edges.lines[item as usize]))
+            own.is_some_and(|own| ordered(own.ends) == ends_of(&edges.lines[item as usize]))
         };
         other < point
             && self

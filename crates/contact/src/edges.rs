@@ -11,6 +11,9 @@
 //! lets out edges that pass behind the other body: an edge there has one of the two cones on the wrong side. Gaps below a *depth* are none,
 //! since the far edge of a thin part may be seen so, nor are those beyond a *reach*.
 //!
+//! Axes of beams and sharp edges of shells may cross sharp edges of solids too. What is around them is round: they have no cone, the gap is less by their radius,
+//! and n is that of the edge of the solid.
+//!
 //! Edges that run along each other, and those that cross at an end of one where no edge goes on, are left to the nodes. Where an edge goes on in another
 //! one, the first of both has what crosses at the node between them. Of what two points tell of each other, where
 //! a surface faces itself, the first one tells. A point faces one edge, the nearest: one that crosses two on the other side, as a long face
@@ -22,6 +25,7 @@ use carom_algebra::tensor::Vec3;
 use carom_mesh::{Face, SharpEdge};
 
 use crate::crossing::{ALONG, AT_END, between};
+use crate::point::EdgeNodes;
 use crate::sight::View;
 use crate::{Places, Point};
 
@@ -52,8 +56,8 @@ pub struct Edges {
 /// What is known of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
-    /// A further node of each of its faces, by system number.
-    pub(super) beside: [u32; 2],
+    /// A further node of each of its faces, by system number; none of a line around which the surface is round.
+    pub(super) beside: Option<[u32; 2]>,
     /// Its faces, by their numbers in the target.
     pub(super) faces: [u32; 2],
     /// The point of the same edge, where the surface faces itself.
@@ -65,8 +69,10 @@ pub(super) struct Side {
 /// An edge where it is, m.
 pub(super) struct Line {
     pub(super) ends: [[f64; 3]; 2],
-    /// The further nodes of its faces.
-    beside: [[f64; 3]; 2],
+    /// The further nodes of its faces; none of a line around which the surface is round.
+    beside: Option<[[f64; 3]; 2]>,
+    /// Distance of the surface, m.
+    radius: f64,
     /// Whether what crosses at its ends is its own.
     own: [bool; 2],
 }
@@ -80,9 +86,9 @@ pub(super) struct Meeting {
     pub(super) place: [f64; 3],
     /// Unit normal out of the target.
     pub(super) normal: [f64; 3],
-    /// m.
+    /// Of the surfaces, m.
     pub(super) gap: f64,
-    /// Distance of the nearest places, m: that of the gap but for rounding, and at an end for what the edges cross beside it.
+    /// Distance of the nearest places of the lines, m: that of the gap and the radii but for rounding, and at an end for what the edges cross beside it.
     pub(super) distance: f64,
 }
 
@@ -92,7 +98,7 @@ impl Edges {
     pub fn new(edges: &[SharpEdge], points: &[Point], x: &[[f64; 3]], depth: f64) -> Option<Edges> {
         let of_points: Vec<[u32; 2]> = points
             .iter()
-            .map(|point| point.edge().map_or([u32::MAX; 2], |[ends, _]| ends))
+            .map(|point| point.edge().map_or([u32::MAX; 2], |edge| edge.ends))
             .collect();
         let lines: Vec<[u32; 2]> = edges
             .iter()
@@ -100,7 +106,7 @@ impl Edges {
             .collect();
         let own_ends = owned(&lines, x);
         let own = points.iter().zip(0..);
-        let own = own.filter_map(|(point, k)| Some((ordered(point.edge()?[0]), k)));
+        let own = own.filter_map(|(point, k)| Some((ordered(point.edge()?.ends), k)));
         let own: BTreeMap<[u32; 2], u32> = own.collect();
         let length = |[a, b]: [u32; 2]| {
             let (a, b) = (x[a as usize], x[b as usize]);
@@ -138,11 +144,17 @@ impl Edges {
         self.reach
     }
 
+    /// The most that the surface is away from an edge, m.
+    pub(crate) fn widest(&self) -> f64 {
+        let radii = self.lines.iter().filter_map(|line| line.radius);
+        radii.fold(0.0, f64::max)
+    }
+
     /// The same with nodes in other numbers.
     pub(crate) fn renumbered(&self, number: impl Fn(u32) -> u32) -> Edges {
         let lines = self.lines.iter();
         let sides = self.sides.iter().map(|side| Side {
-            beside: side.beside.map(&number),
+            beside: side.beside.map(|beside| beside.map(&number)),
             ..*side
         });
         Edges {
@@ -180,18 +192,36 @@ impl Edges {
     }
 
     pub(super) fn line(&self, places: &Places, item: u32) -> Line {
-        let [a, b, ..] = self.lines[item as usize].nodes;
+        let line = &self.lines[item as usize];
+        let [a, b, ..] = line.nodes;
         let side = &self.sides[item as usize];
-        Line::new(places, [[a, b], side.beside], side.own)
+        let nodes = EdgeNodes {
+            ends: [a, b],
+            beside: side.beside,
+        };
+        let radius = line.radius.unwrap_or(0.0);
+        Line::new(places, (nodes, radius), side.own)
+    }
+
+    /// The line of a point that faces the edges.
+    pub(super) fn line_of(
+        &self,
+        places: &Places,
+        (point, number): (&Point, usize),
+    ) -> Option<Line> {
+        let nodes = point.edge()?;
+        Some(Line::new(places, (nodes, point.radius), self.own[number]))
     }
 }
 
 impl Line {
-    pub(super) fn new(places: &Places, [ends, beside]: [[u32; 2]; 2], own: [bool; 2]) -> Line {
+    fn new(places: &Places, (nodes, radius): (EdgeNodes, f64), own: [bool; 2]) -> Line {
+        let of = |nodes: [u32; 2]| nodes.map(|node| places.of(node));
         Line {
             own,
-            ends: ends.map(|node| places.of(node)),
-            beside: beside.map(|node| places.of(node)),
+            ends: of(nodes.ends),
+            beside: nodes.beside.map(of),
+            radius,
         }
     }
 
@@ -215,9 +245,10 @@ impl Line {
         xi.abs() < 1.0 - AT_END || across && self.own[usize::from(xi > 0.0)]
     }
 
-    /// Whether both faces are behind the plane through the edge that is normal to n, to rounding: n is in the cone of the normals of the edge.
+    /// Whether both faces are behind the plane through the edge that is normal to n, to rounding: n is in the cone of the normals of the edge. Any is
+    /// in that of a round one.
     fn faces(&self, n: &Vec3) -> bool {
-        self.beside.iter().all(|place| {
+        self.beside.iter().flatten().all(|place| {
             let way = Vec3::from(*place) - Vec3::from(self.ends[0]);
             n.dot(&way) <= LEVEL * way.norm()
         })
@@ -241,7 +272,7 @@ pub(super) fn meeting(own: &Line, other: &Line, depth: f64) -> Option<Meeting> {
         [false, true] => -across,
         _ => return None,
     };
-    let gap = n.dot(&way);
+    let gap = n.dot(&way) - own.radius - other.radius;
     (gap >= -depth).then(|| Meeting {
         xi: nearest.xi,
         place: y.into(),

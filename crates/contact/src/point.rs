@@ -5,6 +5,23 @@ use carom_mesh::{Face, SharpEdge};
 
 use crate::Places;
 
+/// Lines of the target that a line of the secondary surface may cross between its nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Crossed {
+    /// Axes of beams and sharp edges of shells among the faces of the target.
+    Lines,
+    /// The edges of the contact ([`Contact::edges`](crate::Contact::edges)).
+    Edges,
+}
+
+/// The nodes of the line of a point that faces the edges of the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct EdgeNodes {
+    pub(crate) ends: [u32; 2],
+    /// A further node of each of its two faces; none of the axis of a beam and of the edge of a shell.
+    pub(crate) beside: Option<[u32; 2]>,
+}
+
 /// A point of the secondary surface that carries a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
@@ -22,8 +39,8 @@ pub struct Point {
     /// Distance of the surface from the place of the point, m: zero but around axes of beams. Gaps are less by it, and friction
     /// acts at this distance.
     pub radius: f64,
-    /// Whether it is the place between its two nodes that is nearest to the target, wherever that is.
-    crosses: bool,
+    /// What of the target it is nearest to, of the places between its two nodes, if it is the nearest of these.
+    crosses: Option<Crossed>,
     /// Whether it is on the primary side of a contact that looks both ways: its force acts on the secondary side with the opposite sign.
     on_primary: bool,
 }
@@ -39,7 +56,7 @@ impl Point {
             area,
             share,
             radius: 0.0,
-            crosses: false,
+            crosses: None,
             on_primary: false,
         };
         (point.nodes[0], point.shape[0]) = (node, 1.0);
@@ -102,23 +119,28 @@ impl Point {
         Point {
             area,
             radius: axis.radius.unwrap_or(0.0),
-            crosses: true,
+            crosses: Some(Crossed::Lines),
             ..Point::on_face(axis, &[0.0; 3])
         }
     }
 
-    /// The place of a sharp edge of a solid that is nearest to another one which it crosses. `area` in m²; it has no share in the surface, whose
-    /// nodes stand for all of it.
+    /// The place of a sharp edge of a solid, of an axis or of the edge of a shell that is nearest to an edge of the target which it crosses.
+    /// `area` in m²; it has no share in the surface, whose nodes stand for all of it.
     pub fn at_edge(edge: &SharpEdge, area: f64) -> Point {
-        let mut point = Point::crossing(&edge.line, area);
-        point.nodes[2..4].copy_from_slice(&edge.beside);
-        point.beside = 2;
+        let mut point = Point {
+            crosses: Some(Crossed::Edges),
+            ..Point::crossing(&edge.line, area)
+        };
+        if let Some(beside) = edge.beside {
+            point.nodes[2..4].copy_from_slice(&beside);
+            point.beside = 2;
+        }
         point
     }
 
-    /// Whether it is the point of a sharp edge of a solid ([`Point::at_edge`]).
+    /// Whether it faces the edges of the target ([`Point::at_edge`]).
     pub fn is_at_edge(&self) -> bool {
-        self.edge().is_some()
+        self.crosses == Some(Crossed::Edges)
     }
 
     /// Of a point of a sharp edge of a solid a further node of each of its two faces, which decide what it faces; none of others.
@@ -129,10 +151,13 @@ impl Point {
         }
     }
 
-    /// Of a point of a sharp edge of a solid ([`Point::at_edge`]) the ends of the edge, and a further node of each of its faces.
-    pub(crate) fn edge(&self) -> Option<[[u32; 2]; 2]> {
+    /// The nodes of its line, of a point that faces the edges of the target ([`Point::at_edge`]).
+    pub(crate) fn edge(&self) -> Option<EdgeNodes> {
         let [a, b, c, d, ..] = self.nodes;
-        (self.crosses && self.beside == 2).then_some([[a, b], [c, d]])
+        self.is_at_edge().then(|| EdgeNodes {
+            ends: [a, b],
+            beside: (self.beside == 2).then_some([c, d]),
+        })
     }
 
     /// The point with its nodes in other numbers.
@@ -150,7 +175,7 @@ impl Point {
 
     /// Whether it stands at no fixed place between its nodes ([`Point::crossing`]).
     pub fn crosses(&self) -> bool {
-        self.crosses
+        self.crosses.is_some()
     }
 
     /// The point at another place between its two nodes, by the reference coordinate of the line.
@@ -206,7 +231,7 @@ impl Point {
             area: 0.0,
             share: 0.0,
             radius: 0.0,
-            crosses: false,
+            crosses: None,
             on_primary: false,
         };
         point.nodes[..nodes.len()].copy_from_slice(nodes);

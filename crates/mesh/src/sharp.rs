@@ -7,13 +7,13 @@ use carom_elements::Kind;
 use crate::axes::{FOLD, normal};
 use crate::{Face, Mesh, Rim, Surface, face_nodes};
 
-/// A sharp convex edge between two straight faces of a solid.
+/// A sharp convex edge between two straight faces of a solid, the axis of a beam or a sharp edge of a shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SharpEdge {
     /// The edge as a line of two nodes, which bounds the cell of the first of its faces.
     pub line: Face,
-    /// A further node of each of its faces.
-    pub beside: [u32; 2],
+    /// A further node of each of its faces; none of a line around which the surface is round.
+    pub beside: Option<[u32; 2]>,
     /// Its faces, by their places in the surface.
     pub faces: [u32; 2],
 }
@@ -23,7 +23,7 @@ impl SharpEdge {
     pub fn renumbered(self, number: impl Fn(u32) -> u32) -> SharpEdge {
         SharpEdge {
             line: self.line.renumbered(&number),
-            beside: self.beside.map(&number),
+            beside: self.beside.map(|beside| beside.map(&number)),
             ..self
         }
     }
@@ -71,6 +71,28 @@ impl Surface {
         sharp.map(|sides| self.sharp_edge(sides)).collect()
     }
 
+    /// The edges of a surface that lines may cross between their nodes: sharp ones of solids, of a surface around axes and middles these and
+    /// the sharp edges of shells.
+    pub fn edges_to_cross(&self, mesh: &Mesh) -> Vec<SharpEdge> {
+        if self.faces.iter().all(|face| face.radius.is_none()) {
+            return self.sharp_edges_of_solids(mesh);
+        }
+        let axes = self.faces.iter().zip(0..);
+        let axes = axes.filter(|(face, _)| face.is_round() && face.corners().len() == 2);
+        let axes = axes.map(|(face, number)| (*face, number));
+        let edges = self.sharp_edges(mesh).into_iter().filter_map(|line| {
+            let has = |face: &Face| face.parent == line.parent;
+            let number = self.faces.iter().position(has)?;
+            Some((line, number as u32))
+        });
+        let lines = axes.chain(edges).map(|(line, number)| SharpEdge {
+            line,
+            beside: None,
+            faces: [number; 2],
+        });
+        lines.collect()
+    }
+
     /// Whether two faces meet convexly at an edge and at more than 40°.
     fn is_sharp(&self, mesh: &Mesh, sides: [&Side; 2]) -> bool {
         let normals = sides.map(|side| normal(mesh, &self.faces[side.face as usize]));
@@ -94,7 +116,7 @@ impl Surface {
                 radius: None,
                 rim: Rim::default(),
             },
-            beside: [one.beside, other.beside],
+            beside: Some([one.beside, other.beside]),
             faces: [one.face, other.face],
         }
     }
@@ -114,7 +136,7 @@ mod tests {
         assert_eq!(edges.len(), 16);
         for edge in &edges {
             assert!((edge.length(&mesh.nodes) - 1.0).abs() < 1e-15);
-            for (face, beside) in edge.faces.iter().zip(edge.beside) {
+            for (face, beside) in edge.faces.iter().zip(edge.beside.unwrap()) {
                 let nodes = surface.faces[*face as usize].corners();
                 let ends = edge.line.corners();
                 assert!(ends.iter().all(|node| nodes.contains(node)));

@@ -12,8 +12,8 @@ use crate::model::{Model, ModelContact, ModelTarget};
 /// Part of the size of the elements at the edges beyond which edges of solids that are behind each other do not touch.
 pub(crate) const DEPTH: f64 = 0.25;
 
-/// A contact that is looked for both ways by system number; none of one that is not, and of a surface that faces itself, which its points see from all
-/// sides. `x`: reference coordinates by system number, m.
+/// A contact that is looked for both ways by system number; none of one that is not, of a surface that faces itself, which its points see from all
+/// sides, and of axes and middles, whose edges alone cross those of the other side. `x`: reference coordinates by system number, m.
 pub(crate) fn numbered(
     contact: &ModelContact,
     model: &Model,
@@ -24,7 +24,9 @@ pub(crate) fn numbered(
         return None;
     };
     let sides = [&contact.secondary, primary];
-    if !contact.both_ways || Sight::is_needed(&sides[0].faces, &sides[1].faces) {
+    let solid = |side: &&Surface| side.faces.iter().all(|face| face.radius.is_none());
+    let alone = || Sight::is_needed(&sides[0].faces, &sides[1].faces);
+    if !contact.both_ways || !sides.iter().all(solid) || alone() {
         return None;
     }
     let mesh = &model.mesh;

@@ -225,7 +225,7 @@ fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
     }
 }
 
-/// Sharp edges of the solids of both sides of a contact, by the numbers of the mesh.
+/// Edges of both sides of a contact that may cross, by the numbers of the mesh.
 struct SharpEdges {
     secondary: Vec<SharpEdge>,
     primary: Vec<SharpEdge>,
@@ -233,7 +233,8 @@ struct SharpEdges {
     depth: f64,
 }
 
-/// The sharp edges of a contact that asks for them; none where a side has none.
+/// The edges of a contact that asks for them: sharp ones of solids, of which a side is, and axes of beams or sharp edges of shells of the other. None
+/// where a side has none.
 fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
     let ModelTarget::Surface(primary) = &contact.primary else {
         return None;
@@ -244,8 +245,10 @@ fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
         return None;
     }
     let surfaces = [&contact.secondary, primary];
-    let [secondary, primary] = surfaces.map(|surface| surface.sharp_edges_of_solids(mesh));
-    if secondary.is_empty() || primary.is_empty() {
+    let [secondary, primary] = surfaces.map(|surface| surface.edges_to_cross(mesh));
+    let mut of_solids = secondary.iter().chain(&primary);
+    let any_of_solids = of_solids.any(|edge| edge.beside.is_some());
+    if secondary.is_empty() || primary.is_empty() || !any_of_solids {
         return None;
     }
     let sides = surfaces.into_iter().zip([&secondary, &primary]);
@@ -258,9 +261,10 @@ fn sharp_edges(contact: &ModelContact, mesh: &Mesh) -> Option<SharpEdges> {
     })
 }
 
-/// The least height of the cells at sharp edges of a surface over its faces, m; infinite without any.
+/// The least height of the cells at sharp edges of solids of a surface over its faces, m; infinite without any.
 pub(crate) fn least_height((surface, edges): (&Surface, &[SharpEdge]), mesh: &Mesh) -> f64 {
-    let faces = edges.iter().flat_map(|edge| edge.faces);
+    let edges = edges.iter().filter(|edge| edge.beside.is_some());
+    let faces = edges.flat_map(|edge| edge.faces);
     let faces = faces.map(|face| &surface.faces[face as usize]);
     let heights = faces.map(|face| height(mesh, face.parent, face.kind, face.corners()));
     heights.fold(f64::INFINITY, f64::min)

@@ -379,7 +379,8 @@ pub struct ModelContact {
     pub near_only: bool,
     /// Whether contact is looked for both ways: nodes of the primary surface are points too, and in space sharp edges of solids that cross between
     /// their nodes. Of surfaces of solids, at nodes, with finite sliding; without deletion. Points that would tell what those of the other side tell
-    /// leave it to these, and forces count for the secondary side.
+    /// leave it to these, and forces count for the secondary side. Of axes of beams and middles of shells against solids axes and sharp edges cross
+    /// those of the solids, and nodes of one side are points.
     pub both_ways: bool,
     /// The bodies of the faces where a side has several, and which of them do not touch each other.
     pub parts: Option<Parts>,

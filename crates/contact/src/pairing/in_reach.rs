@@ -96,7 +96,8 @@ impl Contact {
         [reach, most, motion]: [f64; 3],
     ) -> InReach {
         let depth = self.edges.as_ref().map_or(0.0, Edges::depth);
-        let limit = self.limit(point, reach).max(depth);
+        let wide = SQRT_2 * self.edges.as_ref().map_or(0.0, Edges::widest);
+        let limit = (self.limit(point, reach) + wide).max(depth);
         let faces = self.edges_in_reach(target, point, [limit, motion]);
         let clearance = || {
             let farthest = limit + FARTHER * self.limit(point, most);

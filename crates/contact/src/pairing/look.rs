@@ -202,9 +202,10 @@ impl Contact {
         let Some(edges) = &self.edges else {
             return (None, f64::INFINITY);
         };
-        let limit = self.limit(k, reach.watched).max(edges.depth());
+        let wide = SQRT_2 * edges.widest();
+        let limit = (self.limit(k, reach.watched) + wide).max(edges.depth());
         let limit = limit.min(edges.reach());
-        let most = self.limit(k, reach.most).max(2.0 * limit);
+        let most = (self.limit(k, reach.most) + wide).max(2.0 * limit);
         // whether edges meet may change with any motion, their distance may not
         let apart = self.distance_of_edges(target, k, most).unwrap_or(most);
         if apart > limit {

@@ -251,7 +251,9 @@ impl Stencil {
     pub fn add_curvature(&self, factor: f64, block: &mut Block) {
         match &self.foot {
             Foot::Face(foot) if self.point.edge().is_some() => {
-                let signed = (self.gap, Vec3::from(self.normal));
+                // of the lines, not of the surfaces around them
+                let gap = self.gap + self.point.radius + foot.face.radius.unwrap_or(0.0);
+                let signed = (gap, Vec3::from(self.normal));
                 round::add_edge_curvature((&self.point, foot), signed, factor, block);
             }
             Foot::Face(foot) if foot.face.is_round() && !round::is_inside(foot) => {

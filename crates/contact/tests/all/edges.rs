@@ -183,21 +183,60 @@ fn cones_let_out_what_is_behind() {
     assert!((below.rows.normal(facing[0])[2] - 1.0).abs() < 1e-15);
 }
 
-/// Outside, inside, and where the edges touch to rounding, between bars that are bent.
+/// An edge as the axis of a beam of a radius, m.
+fn axis(edge: &SharpEdge, radius: f64) -> SharpEdge {
+    let mut axis = SharpEdge {
+        beside: None,
+        ..*edge
+    };
+    axis.line.radius = Some(radius);
+    axis
+}
+
+/// A round axis has the gap of its line less the radius, on both sides of zero, up to the depth.
+#[test]
+fn an_axis_touches_a_sharp_edge_at_its_radius() {
+    let bars = Bars::new(0.05);
+    let edges = bars.edges(0);
+    let contact = bars.contact();
+    let upper = facing(&bars.paired_after(&contact, 0.0))[0];
+    let points = vec![Point::at_edge(&axis(&edges[upper], 0.03), 1.0)];
+    let contact = Contact {
+        edges: Edges::new(&bars.edges(1), &points, &bars.mesh.nodes, DEPTH),
+        points,
+        ..contact
+    };
+    for down in [0.0, 0.019, 0.021, 0.06, 0.119] {
+        let pairing = bars.paired_after(&contact, down);
+        assert!(
+            (pairing.rows.gap(0) - (0.02 - down)).abs() < 1e-15,
+            "{down}"
+        );
+        assert!((pairing.rows.normal(0)[2] + 1.0).abs() < 1e-15);
+    }
+    assert!(facing(&bars.paired_after(&contact, 0.121)).is_empty());
+}
+
+/// Outside, inside, and where the edges touch to rounding, between bars that are bent; every other time the own edge is a round axis.
 #[test]
 fn rows_and_curvature_of_edges_are_derivatives_on_both_sides_of_zero() {
     let bars = Bars::new(0.05);
     let unknowns = bars.unknowns();
     let mut random = Random(11);
     for case in 0..12 {
+        let radius = [0.0, 0.03][case / 3 % 2];
         let bend = random.vector(unknowns.len());
         let u: Vec<f64> = bend.iter().map(|u| 0.02 * u).collect();
         let contact = bars.contact();
         let point = facing(&paired(&contact, &bars.places(&unknowns, &u)));
         assert_eq!(point.len(), 1);
-        let point = contact.points[point[0]];
+        let points = match radius > 0.0 {
+            true => vec![Point::at_edge(&axis(&bars.edges(0)[point[0]], radius), 1.0)],
+            false => vec![contact.points[point[0]]],
+        };
         let contact = Contact {
-            points: vec![point],
+            edges: Edges::new(&bars.edges(1), &points, &bars.mesh.nodes, DEPTH),
+            points,
             ..contact
         };
         let before = paired(&contact, &bars.places(&unknowns, &u));
