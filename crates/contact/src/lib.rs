@@ -13,6 +13,7 @@ mod edge_pairs;
 mod edges;
 mod initial;
 mod mortar;
+mod nearest;
 mod obstacle;
 mod pairing;
 mod passage;

@@ -1,17 +1,19 @@
 //! The points at which a contact is looked at: nodes of the secondary surface, or Gauss points of its faces.
 
-use carom_elements::{MAX_FACE_NODES, map};
+use carom_elements::{Kind, MAX_FACE_NODES, map};
 use carom_mesh::{Face, SharpEdge};
 
 use crate::Places;
 
-/// Lines of the target that a line of the secondary surface may cross between its nodes.
+/// What of the target a line or a face of the secondary surface may meet between its nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Crossed {
     /// Axes of beams and sharp edges of shells among the faces of the target.
     Lines,
     /// The edges of the contact ([`Contact::edges`](crate::Contact::edges)).
     Edges,
+    /// A ball or a cylinder: the point is the place of a line or a face that is nearest to it.
+    Round,
 }
 
 /// The nodes of the line of a point that faces the edges of the target.
@@ -138,6 +140,38 @@ impl Point {
         point
     }
 
+    /// The place of a line of two nodes, or of a face of three or four, that is nearest to a ball or a cylinder. `beside`: of a line between faces a
+    /// further node of each, two at most; `radius`, `area` and `share` as those of nodes.
+    pub fn near_round(
+        nodes: &[u32],
+        beside: &[u32],
+        (radius, area, share): (f64, f64, f64),
+    ) -> Point {
+        let mut point = Point::at_node(0, area, share).around(radius);
+        (point.count, point.beside) = (nodes.len(), beside.len());
+        point.crosses = Some(Crossed::Round);
+        point.nodes[..nodes.len()].copy_from_slice(nodes);
+        point.nodes[nodes.len()..nodes.len() + beside.len()].copy_from_slice(beside);
+        point.shape[..nodes.len()].fill(1.0 / nodes.len() as f64);
+        point
+    }
+
+    /// Whether it faces a ball or a cylinder from between nodes ([`Point::near_round`]).
+    pub fn faces_round(&self) -> bool {
+        self.crosses == Some(Crossed::Round)
+    }
+
+    /// Nodes of its faces that do not carry it.
+    pub(crate) fn nodes_beside(&self) -> &[u32] {
+        &self.nodes[self.count..self.count + self.beside]
+    }
+
+    /// The point at another place of its line or face.
+    pub(crate) fn moved_on(mut self, kind: Kind, xi: &[f64; 3]) -> Point {
+        (kind.table().shape)(xi, &mut self.shape[..self.count]);
+        self
+    }
+
     /// Whether it faces the edges of the target ([`Point::at_edge`]).
     pub fn is_at_edge(&self) -> bool {
         self.crosses == Some(Crossed::Edges)
@@ -146,7 +180,7 @@ impl Point {
     /// Of a point of a sharp edge of a solid a further node of each of its two faces, which decide what it faces; none of others.
     pub fn beside_edge(&self) -> &[u32] {
         match self.is_at_edge() {
-            true => &self.nodes[self.count..self.count + self.beside],
+            true => self.nodes_beside(),
             false => &[],
         }
     }
@@ -275,7 +309,6 @@ impl Point {
 #[cfg(test)]
 mod tests {
     use carom_algebra::unknowns::Unknowns;
-    use carom_elements::Kind;
     use carom_mesh::{ElementId, Rim, face_nodes};
 
     use super::*;

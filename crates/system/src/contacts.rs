@@ -8,6 +8,7 @@ use carom_mesh::{ElementId, Face, Mesh, Rim, SharpEdge, Surface};
 
 use crate::both_ways::{self, DEPTH};
 use crate::model::{Model, ModelBody, ModelContact, ModelTarget};
+use crate::round_obstacles::points_between;
 
 /// The body of a cell, in the order of the system.
 fn owner(model: &Model, cell: ElementId) -> Option<usize> {
@@ -133,6 +134,10 @@ pub(crate) fn numbered(
                 points.extend(own.map(|line| crossing(&renumbered(&line, number))));
             }
             let mut points = shared(points);
+            if solid.is_none_or(|body| body.spec.deletion.is_none()) {
+                let between = points_between(contact, (&model.mesh, number), &points);
+                points.extend(between);
+            }
             let own = sharp.iter().flat_map(|sharp| &sharp.secondary);
             points.extend(own.map(|edge| at_edge(edge, &model.mesh, number)));
             (points, None)

@@ -41,6 +41,7 @@ mod part;
 mod refused;
 mod reported;
 mod rigid;
+mod round_obstacles;
 mod sharp;
 mod sliding;
 mod solver;

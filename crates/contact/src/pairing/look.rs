@@ -90,7 +90,9 @@ impl Contact {
         let point = &self.points[number as usize];
         let (stencil, clearance) = match &self.target {
             Target::Rigid(obstacle) => {
-                let distance = obstacle.at(places.time).distance_of(point, places);
+                // no place of a line or a face is nearer than this, wherever its nearest one counts
+                let (nearest, _) = obstacle.faced_by(point, places);
+                let distance = obstacle.at(places.time).distance_of(&nearest, places);
                 let gap = distance.gap + self.offset(number as usize) - point.radius;
                 let stencil = match gap <= reach.near {
                     true => Stencil::on_obstacle(places, point, obstacle, span),

@@ -5,7 +5,7 @@
 //! closest point on the other side ([`stencil`]).
 
 mod again;
-mod block;
+pub(crate) mod block;
 mod clip;
 mod curvature;
 mod foothold;

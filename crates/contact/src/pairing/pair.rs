@@ -30,11 +30,16 @@ impl Contact {
             Target::Rigid(obstacle) => {
                 let placed = obstacle.at(places.time);
                 for (k, point) in self.points.iter().enumerate() {
+                    let (point, counts) = obstacle.faced_by(point, places);
+                    if !counts {
+                        rows.push(f64::INFINITY, [0.0; 3]);
+                        continue;
+                    }
                     let x = point.place(places);
-                    let Distance { gap, normal, .. } = placed.distance_of(point, places);
+                    let Distance { gap, normal, .. } = placed.distance_of(&point, places);
                     rows.push(gap + offset(k), normal);
                     rows.set_rate(placed.gap_rate(&x, &normal));
-                    add_point(places, point, &normal, rows);
+                    add_point(places, &point, &normal, rows);
                 }
             }
             Target::Surface(faces) => {

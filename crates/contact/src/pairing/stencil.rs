@@ -9,6 +9,7 @@ use super::curvature::Shape;
 use super::foothold::Foothold;
 use super::round;
 use crate::crossing::Opposite;
+use crate::nearest::Moves;
 use crate::{Obstacle, Places, Point, Rows};
 
 /// A point, its gap, and what is at the other end of it.
@@ -34,6 +35,8 @@ enum Foot {
     Obstacle {
         /// Second derivative of the gap by the place of the point, 1/m.
         hessian: [[f64; 3]; 3],
+        /// How the point moves over its line or face, where it does.
+        moves: Option<Moves>,
         /// Velocity of the obstacle's particle there, m/s.
         velocity: [f64; 3],
         /// Its mean velocity over the span of the pairing, m/s.
@@ -55,20 +58,22 @@ impl Stencil {
         obstacle: &Obstacle,
         span: [f64; 2],
     ) -> Option<Stencil> {
+        let (point, counts) = obstacle.faced_by(point, places);
         let (x, placed) = (point.place(places), obstacle.at(places.time));
-        let found = placed.distance_of(point, places);
-        if found.gap == f64::INFINITY {
+        let found = placed.distance_of(&point, places);
+        if !counts || found.gap == f64::INFINITY {
             return None;
         }
         let span = span.map(|after| places.time + after);
         let stencil = Stencil {
-            point: *point,
+            point,
             gap: found.gap - point.radius,
             normal: found.normal,
             first: [0; 2 * NODES],
             carried: false,
             foot: Foot::Obstacle {
                 hessian: found.hessian,
+                moves: Moves::of(&point, places),
                 velocity: placed.velocity(&x),
                 carried: obstacle.mean_velocity(&x, places.time, span),
             },
@@ -261,7 +266,12 @@ impl Stencil {
             }
             Foot::Face(foot) if foot.dim() == 0 => (),
             Foot::Face(foot) => self.shape(foot).curvature(factor, block),
-            Foot::Obstacle { hessian, .. } => self.obstacle_curvature(factor, hessian, block),
+            Foot::Obstacle { hessian, moves, .. } => {
+                self.obstacle_curvature(factor, hessian, block);
+                if let Some(moves) = moves {
+                    moves.add_curvature(&self.point, (hessian, &self.normal), factor, block);
+                }
+            }
         }
     }
 

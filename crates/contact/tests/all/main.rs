@@ -12,6 +12,7 @@ mod edges;
 mod fixture;
 mod mortar;
 mod moving;
+mod nearest;
 mod pairs;
 mod rims;
 mod round;

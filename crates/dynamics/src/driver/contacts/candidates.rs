@@ -28,6 +28,10 @@ impl Contacts {
         let contact = as_narrowed(&self.narrowed, system, number);
         let first = system.contacts[number].range.start;
         let takes_part = |other: usize| chosen[first + other];
+        let own = &contact.points[point as usize - first];
+        if own.faces_round() {
+            return self.telling.leaves_to_nodes(number, own, takes_part);
+        }
         contact.leaves_it((&self.pairing, first), point as usize - first, takes_part)
     }
 

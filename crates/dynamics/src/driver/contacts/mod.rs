@@ -124,7 +124,7 @@ impl Contacts {
             closings: Closings::of(system),
             rebound: Rebound::of(system),
             candidates: Vec::new(),
-            telling: Telling::default(),
+            telling: Telling::of(system),
             candidate_data: CandidateData::default(),
             free_gaps: Vec::new(),
             weak: WeakForms::new(system)?,

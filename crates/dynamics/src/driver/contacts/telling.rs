@@ -3,14 +3,56 @@
 //! Whether those opposite to a point are watched may depend on its force: it pushes them open, they no longer tell, and once it tells in their
 //! place they are pushed shut again. A point that comes back after it has left does not leave again in the attempt.
 
-/// What points have done in an attempt; both ascending.
+use std::collections::BTreeMap;
+
+use carom_contact::Point;
+
+use crate::system::System;
+
+/// What points have done in an attempt.
 #[derive(Debug, Default)]
 pub(super) struct Telling {
+    /// By contact the points of nodes, by number in the contact, where points between them face something round.
+    of_nodes: Vec<BTreeMap<u32, u32>>,
+    /// Ascending.
     left: Vec<u32>,
+    /// Ascending.
     back: Vec<u32>,
 }
 
 impl Telling {
+    /// Of a system, before any attempt.
+    pub(super) fn of(system: &System) -> Telling {
+        let of_nodes = |points: &[Point]| match points.iter().any(Point::faces_round) {
+            true => {
+                let points = points.iter().zip(0..);
+                let nodes = points.filter(|(point, _)| !point.crosses());
+                nodes.map(|(point, k)| (point.node(), k)).collect()
+            }
+            false => BTreeMap::new(),
+        };
+        let contacts = system.contacts.iter();
+        Telling {
+            of_nodes: contacts.map(|contact| of_nodes(&contact.points)).collect(),
+            ..Telling::default()
+        }
+    }
+
+    /// Whether a point between nodes of a contact leaves what is round to one of these that takes part.
+    pub(super) fn leaves_to_nodes(
+        &self,
+        contact: usize,
+        point: &Point,
+        takes_part: impl Fn(usize) -> bool,
+    ) -> bool {
+        let of_nodes = &self.of_nodes[contact];
+        let mut own = point.carriers();
+        own.any(|(node, _)| {
+            let point = of_nodes.get(&node);
+            point.is_some_and(|&point| takes_part(point as usize))
+        })
+    }
+
     /// Begins an attempt.
     pub(super) fn begin(&mut self) {
         self.left.clear();
