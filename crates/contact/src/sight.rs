@@ -116,6 +116,7 @@ impl Sight {
         let mut sight = Sight::up_to(of, target, x, depth);
         if sight.both && !sight.round {
             sight.limit_to_thickness(of.0, target, x);
+            sight.take_sides(of.0, x);
         }
         sight
     }
@@ -129,10 +130,12 @@ impl Sight {
         parts: &Parts,
     ) -> Sight {
         let sight = Sight::up_to((points, faces), faces, x, depth);
-        Sight {
+        let mut sight = Sight {
             reach: f64::INFINITY,
             ..sight.with_parts(parts)
-        }
+        };
+        sight.take_sides(points, x);
+        sight
     }
 
     /// The views up to a depth, whatever the thickness is.
@@ -195,9 +198,6 @@ impl Sight {
         };
         if !round {
             sight.take_corners(points, x);
-        }
-        if itself && !round {
-            sight.take_sides(points, x);
         }
         sight
     }
@@ -342,7 +342,10 @@ impl Sight {
             .map(|face| bounds(face, x).diagonal())
             .collect();
         let surface = (&self.faces[..], &normals[..], &diagonals[..]);
-        self.sides = Some(Sides::new(&nodes, &self.around, surface));
+        let parts = self.parts.as_ref();
+        let is_secondary =
+            |face: usize| parts.is_none_or(|parts| parts.secondary[face].is_first != Some(false));
+        self.sides = Some(Sides::new(&nodes, &self.around, surface, is_secondary));
     }
 
     /// Takes half the way back to the closest face turned against a point as depth where that is less.

@@ -1,10 +1,10 @@
 //! Contacts: surfaces on the bodies, laws, integration.
 
-use carom_bodies::Kinematics;
+use carom_bodies::{Kinematics, height};
 use carom_contact::law::Level;
 use carom_contact::law::Side;
-use carom_contact::{Initial, Integration, Law, Sliding};
-use carom_dynamics::{ModelBody, ModelContact, ModelTarget};
+use carom_contact::{Initial, Integration, Law, Sight, Sliding};
+use carom_dynamics::{Model, ModelBody, ModelContact, ModelTarget};
 use carom_mesh::{CellsByNode, ElementId, Face, Mesh, Surface};
 
 use super::context::Context;
@@ -153,6 +153,55 @@ pub(super) fn default_sliding(context: &Context, contacts: &mut [ModelContact], 
         let given = context.case.contact.get(&contact.name);
         if *far && given.is_some_and(|given| given.sliding.is_none()) {
             contact.sliding = Sliding::Finite;
+        }
+    }
+}
+
+/// Lets contacts between solids that follow their motion be looked for both ways, at nodes, where no cells are deleted and one scheme has both sides.
+pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
+    let Model {
+        contacts,
+        bodies,
+        mesh,
+        ..
+    } = model;
+    let owner = |face: &Face| {
+        let has = |body: &ModelBody| body.spec.cells.contains(&face.parent);
+        bodies.iter().position(has)
+    };
+    for contact in contacts {
+        let named = context.case.contact.get(&contact.name);
+        let ModelTarget::Surface(primary) = &contact.primary else {
+            continue;
+        };
+        let plain = |face: &Face| {
+            let table = face.kind.table();
+            face.radius.is_none() && table.dim > 0 && !table.is_quadratic()
+        };
+        let sides = [&contact.secondary, primary];
+        let fits = named.is_some()
+            && contact.sliding == Sliding::Finite
+            && contact.integration == Integration::Node
+            && sides.iter().all(|side| side.faces.iter().all(plain))
+            && !Sight::is_needed(&contact.secondary.faces, &primary.faces);
+        if !fits {
+            continue;
+        }
+        let of = sides.map(|side| side.faces.first().and_then(owner));
+        let [Some(one), Some(other)] = of else {
+            continue;
+        };
+        let deletes = [one, other]
+            .iter()
+            .any(|&body| bodies[body].spec.deletion.is_some());
+        if deletes || context.plan.zone_of(one) != context.plan.zone_of(other) {
+            continue;
+        }
+        contact.both_ways = true;
+        if contact.depth.is_none() {
+            let faces = sides.iter().flat_map(|side| &side.faces);
+            let heights = faces.map(|face| height(mesh, face.parent, face.kind, face.corners()));
+            contact.depth = Some(heights.fold(f64::INFINITY, f64::min));
         }
     }
 }

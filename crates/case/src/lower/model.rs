@@ -88,6 +88,7 @@ pub(super) fn lower(
 pub(super) fn in_one(context: &Context, mut model: Model) -> Model {
     let far = model.slide_far();
     contacts::default_sliding(context, &mut model.contacts, &far);
+    contacts::look_both_ways(context, &mut model);
     model.critical_fraction = match time::size(context) {
         (_, Size::Critical(fraction)) => Some(fraction),
         _ => None,

@@ -19,7 +19,7 @@ material.m = {{ density = 1000.0, elastic = {{ young = "1 GPa", poisson = 0.3 }}
 body.floor = {{ region = "floor", material = "m", section.plane-strain.thickness = 1.0{rigid} }}
 body.pin = {{ region = "pin", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [0.0, -1.0] }}
 support.f = {{ on = "{on}", fix = {held} }}
-contact.c = {{ secondary = "floor.top", primary = "pin.bottom", law.velocity = {{}}, sliding = "finite" }}
+contact.c = {{ secondary = "floor.top", primary = "pin.bottom", law.velocity = {{}}, sliding = "finite", integration = "quadrature" }}
 time = {{ end = 0.064, step = 2e-4, scheme.theta = {{}} }}
 "#
         );

@@ -3,7 +3,7 @@
 //! Two smooth pieces of a surface that touch would tell their contact twice: each node of one is paired with a face of the other. The
 //! forces of both then differ by what hardly moves anything (with meshes that match, P on one side and -P on the other move nothing at
 //! all), and rows are nearly dependent. So one piece tells: that of the lower *rank*. Pieces are grown over the faces in the
-//! reference configuration, ranked by the size of their faces, finer ones first.
+//! reference configuration, ranked by the size of their faces, finer ones first; of those that are as fine pieces of the secondary side.
 
 use carom_mesh::Face;
 
@@ -34,13 +34,15 @@ pub(crate) struct Sides {
 }
 
 impl Sides {
-    /// `nodes`: of the points; `around`: faces around each; `surface`: the faces, their unit normals and diagonals (m).
+    /// `nodes`: of the points; `around`: faces around each; `surface`: the faces, their unit normals and diagonals (m); `is_secondary`: whether a face
+    /// is on the secondary side.
     pub(super) fn new(
         nodes: &[u32],
         around: &Lists,
         (faces, normals, diagonals): (&[Face], &[[f64; 3]], &[f64]),
+        is_secondary: impl Fn(usize) -> bool,
     ) -> Sides {
-        let ranks = ranks(faces, normals, diagonals);
+        let ranks = ranks((faces, normals, diagonals), is_secondary);
         let of = |k: usize| around.of(k).iter().map(|&face| face as usize);
         let mut points = Vec::new();
         for (&node, point) in nodes.iter().zip(0..) {
@@ -92,11 +94,15 @@ impl Sides {
 }
 
 /// The rank of the piece of each face.
-fn ranks(faces: &[Face], normals: &[[f64; 3]], diagonals: &[f64]) -> Vec<u32> {
+fn ranks(
+    (faces, normals, diagonals): (&[Face], &[[f64; 3]], &[f64]),
+    is_secondary: impl Fn(usize) -> bool,
+) -> Vec<u32> {
     let incidence = Incidence::new(faces);
     let mut pieces = vec![NONE; faces.len()];
     // number and sum of the diagonals of the faces of each piece
     let mut sizes: Vec<(f64, f64)> = Vec::new();
+    let mut first_faces = Vec::new();
     let mut open = Vec::new();
     for first in 0..faces.len() {
         if pieces[first] != NONE {
@@ -104,6 +110,7 @@ fn ranks(faces: &[Face], normals: &[[f64; 3]], diagonals: &[f64]) -> Vec<u32> {
         }
         let piece = sizes.len() as u32;
         sizes.push((0.0, 0.0));
+        first_faces.push(first);
         pieces[first] = piece;
         open.push(first as u32);
         while let Some(face) = open.pop() {
@@ -123,7 +130,10 @@ fn ranks(faces: &[Face], normals: &[[f64; 3]], diagonals: &[f64]) -> Vec<u32> {
         }
     }
     let mut order: Vec<usize> = (0..sizes.len()).collect();
-    order.sort_by_key(|&piece| (STEPS * (sizes[piece].1 / sizes[piece].0).log2()).round() as i64);
+    order.sort_by_key(|&piece| {
+        let size = (STEPS * (sizes[piece].1 / sizes[piece].0).log2()).round() as i64;
+        (size, !is_secondary(first_faces[piece]))
+    });
     let mut ranks = vec![0; sizes.len()];
     for (rank, piece) in (0..).zip(order) {
         ranks[piece] = rank;

@@ -229,6 +229,7 @@ impl Driver {
         self.contacts.know_gaps(&mut self.attempt, &mut contacts);
         let records = &self.attempt.state.records.contacts;
         shared.sum_contacts(
+            &self.attempt.system,
             &mut contacts,
             (records, self.attempt.state.time + self.attempt.dt),
         );

@@ -63,7 +63,12 @@ impl Driver {
         let impulse = self.attempt.contact_impulse(k);
         let (old, new) = (&self.attempt.state.interface, &self.attempt.next.interface);
         let points = || self.contacts.active().within(system.points_of(k));
-        let mut report = contact_report(points(), rows, [old, new], self.attempt.dt);
+        let mut report = contact_report(
+            (points(), system.contacts[k].tolerance),
+            rows,
+            [old, new],
+            self.attempt.dt,
+        );
         self.contacts.report_friction(&self.attempt, k, &mut report);
         report.moment = self.moment_of(k, nodal);
         report.friction_loss = -self.contacts.friction_work_of(
@@ -213,7 +218,8 @@ impl Driver {
             for (k, report) in self.report.contacts.iter_mut().enumerate() {
                 let (rows, interface) = (self.contacts.normal_rows(), &state.interface);
                 let points = self.attempt.system.points_of(k);
-                *report = contact_report(points.clone(), rows, [interface; 2], 0.0);
+                let tolerance = self.attempt.system.contacts[k].tolerance;
+                *report = contact_report((points.clone(), tolerance), rows, [interface; 2], 0.0);
                 let forces = points.map(|point| (rows, point, interface.force[point]));
                 let at = (&state.motion.frames[..], &[&state.motion.u[..]][..]);
                 report.moment = moment((&self.attempt.system, k), forces, at, &mut nodal);
@@ -223,26 +229,29 @@ impl Driver {
     }
 }
 
-/// What a contact did in a step of `dt` (s): its points, those left out being open before and after it.
+/// What a contact did in a step of `dt` (s): its points, those left out being open before and after it. `tolerance`: m, up to which a gap is the least
+/// one.
 pub fn contact_report(
-    points: impl Iterator<Item = usize>,
+    (points, tolerance): (impl Iterator<Item = usize> + Clone, f64),
     rows: &Rows,
     [old, new]: [&InterfaceState; 2],
     dt: f64,
 ) -> ContactReport {
+    let gaps = points.clone().map(|point| new.gap[point]);
     let mut report = ContactReport {
-        gap: f64::INFINITY,
+        gap: gaps.fold(f64::INFINITY, f64::min),
         ..ContactReport::default()
     };
+    let least = (points.clone()).filter(|&point| new.gap[point] <= report.gap + tolerance);
+    if report.gap.is_finite() {
+        let rates = least.map(|point| new.rate[point]);
+        report.rate = rates.fold(f64::NEG_INFINITY, f64::max);
+    }
     for point in points {
         let force = new.force[point];
         report.force += force;
         for (sum, n) in report.resultant.iter_mut().zip(rows.resultant(point)) {
             *sum += force * n;
-        }
-        let (gap, rate) = (new.gap[point], new.rate[point]);
-        if gap < report.gap || gap == report.gap && gap.is_finite() && rate > report.rate {
-            (report.gap, report.rate) = (gap, rate);
         }
         report.closed += usize::from(force != 0.0);
         report.status_changes += usize::from((force != 0.0) != (old.force[point] != 0.0));

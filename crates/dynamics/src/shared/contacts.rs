@@ -92,12 +92,13 @@ impl SharedPoints {
     }
 
     /// Makes of what the points of this rank did what those of all ranks did, of the contacts of which any rank has looked at some. `before`: their
-    /// records at the start of the step, `end`: its end, s.
+    /// records at the start of the step, `end`: its end, s; `tolerances`: of each, m, up to which a gap is the least one.
     pub(super) fn sum(
         &mut self,
         ranks: &Ranks,
         contacts: &mut [ContactSums],
         (before, end): (&[ContactRecord], f64),
+        tolerances: impl Iterator<Item = f64>,
     ) {
         let SharedPoints {
             gaps,
@@ -107,10 +108,10 @@ impl SharedPoints {
         } = self;
         sums.clear();
         largest.clear();
-        let near = || contacts.iter().zip(&*gaps).filter(|(of, _)| of.near);
-        for (of, gap) in near() {
+        let all = contacts.iter().zip(&*gaps).zip(tolerances);
+        for ((of, gap), tolerance) in all.filter(|((of, _), _)| of.near) {
             numbers(&mut of.clone(), &mut |number| sums.push(*number));
-            let has_least = *gap == of.report.gap;
+            let has_least = *gap <= of.report.gap + tolerance;
             largest.push(if has_least {
                 of.report.rate
             } else {

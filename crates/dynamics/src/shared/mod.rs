@@ -415,10 +415,13 @@ impl Shared {
     /// `before`: the records at its start, `end`: its end, s.
     pub(crate) fn sum_contacts(
         &mut self,
+        system: &System,
         contacts: &mut [ContactSums],
         (before, end): (&[ContactRecord], f64),
     ) {
-        self.points.sum(&self.ranks, contacts, (before, end));
+        let tolerances = system.contacts.iter().map(|contact| contact.tolerance);
+        self.points
+            .sum(&self.ranks, contacts, (before, end), tolerances);
     }
 }
 

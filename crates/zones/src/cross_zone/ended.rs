@@ -70,7 +70,12 @@ impl CrossZoneContacts {
             let points = || system.points_of(contact);
             let now = &self.state.interface;
             let rows = &self.geometry.pairing.rows;
-            let mut report = contact_report(points(), rows, [before, now], dt);
+            let mut report = contact_report(
+                (points(), system.contacts[contact].tolerance),
+                rows,
+                [before, now],
+                dt,
+            );
             let slips = |point: usize| self.slip(point) == Slip::Slip;
             let rubbing = Rubbing {
                 tangents: &self.geometry.pairing.tangents[..system.tangents()],
@@ -130,7 +135,12 @@ impl CrossZoneContacts {
         for contact in 0..self.contacts.len() {
             let now = &self.state.interface;
             let points = self.system.points_of(contact);
-            self.reports[contact] = contact_report(points, rows, [now; 2], 0.0);
+            self.reports[contact] = contact_report(
+                (points, self.system.contacts[contact].tolerance),
+                rows,
+                [now; 2],
+                0.0,
+            );
         }
     }
 

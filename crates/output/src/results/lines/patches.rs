@@ -1,7 +1,7 @@
 //! Whether the elements resolve the patch in which bodies touch.
 
 use carom_bodies::Body;
-use carom_contact::Integration;
+use carom_contact::{Integration, Point};
 use carom_dynamics::System;
 use carom_pages::form::Form;
 
@@ -31,7 +31,12 @@ pub(super) fn of_contacts(evidence: &Evidence) -> Finding {
     let ratios = judged.map(|k| {
         let contact = &system.contacts[k];
         let nodes = nodes(system, k);
-        let closed = nodes * records[k].peak_closed as f64 / contact.points.len() as f64;
+        let closed = match contact.integration {
+            Integration::Node | Integration::Mortar { .. } => records[k].peak_closed as f64,
+            Integration::Points | Integration::Weak { .. } => {
+                nodes * records[k].peak_closed as f64 / contact.points.len() as f64
+            }
+        };
         // a surface with fewer nodes has no more to close
         let needed = NODES[usize::from(system.dim == 3)].min(nodes);
         (&*contact.name, needed / closed)
@@ -80,11 +85,19 @@ fn indents(system: &System, contact: usize) -> bool {
     !is_given && bodies().any(is_continuum) && bodies().all(has_patch)
 }
 
-/// Nodes of the surface that carries the points of a contact.
+/// Nodes of the surface that carries the points of a contact, of both that with fewer.
 fn nodes(system: &System, contact: usize) -> f64 {
-    let points = system.contacts[contact].points.len();
-    let count = match system.contacts[contact].integration {
-        Integration::Node | Integration::Mortar { .. } => points,
+    let pair = &system.contacts[contact];
+    let count = match pair.integration {
+        Integration::Node | Integration::Mortar { .. } => {
+            let nodes = pair.points.iter().filter(|point| !point.crosses());
+            let (other, own): (Vec<&Point>, Vec<&Point>) =
+                nodes.partition(|point| point.is_on_primary());
+            match other.len() {
+                0 => own.len(),
+                others => others.min(own.len()),
+            }
+        }
         Integration::Points | Integration::Weak { .. } => {
             let faces = system.contacts[contact].secondary_faces.iter();
             let mut nodes: Vec<u32> = faces.flat_map(|face| face.corners()).copied().collect();
