@@ -6,11 +6,8 @@
 use carom_contact::{Contact, Edges, Parts, Point, Sight, Target};
 use carom_mesh::{Face, Rim, SharpEdge, Surface};
 
-use crate::contacts::{at_edge, least_height, nodes, renumbered, shared, surface_factor};
+use crate::contacts::{DEPTH, at_edge, least_height, nodes, renumbered, shared, surface_factor};
 use crate::model::{Model, ModelContact, ModelTarget};
-
-/// Part of the size of the elements at the edges beyond which edges of solids that are behind each other do not touch.
-pub(crate) const DEPTH: f64 = 0.25;
 
 /// A contact that is looked for both ways by system number; none of one that is not, of a surface that faces itself, which its points see from all
 /// sides, and of axes and middles, whose edges alone cross those of the other side. `x`: reference coordinates by system number, m.

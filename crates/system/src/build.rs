@@ -10,6 +10,7 @@ use carom_contact::{Contact, Frames, Places};
 use carom_schemes::Scheme;
 
 use crate::assemblies::Assemblies;
+use crate::both_ways;
 use crate::contact_pair::ContactPair;
 use crate::contacts::{numbered, owners};
 use crate::error::Error;
@@ -301,7 +302,10 @@ fn contacts(
 ) -> Result<Vec<Contact>, Error> {
     let own = model.contacts.iter();
     let mut contacts: Vec<Contact> = own
-        .map(|contact| numbered(contact, model, number, places.x))
+        .map(|contact| {
+            let both_ways = both_ways::numbered(contact, model, number, places.x);
+            both_ways.unwrap_or_else(|| numbered(contact, model, number, places.x))
+        })
         .collect();
     let ways = model.contacts.iter().map(|contact| contact.initial);
     settle(&mut contacts, ways, places, (mesh_node, slack(model)))?;

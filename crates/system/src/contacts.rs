@@ -6,7 +6,6 @@ use carom_bodies::{Kinematics, height};
 use carom_contact::{Contact, Edges, Integration, Mortar, Point, Sight, Sliding, Target};
 use carom_mesh::{ElementId, Face, Mesh, Rim, SharpEdge, Surface};
 
-use crate::both_ways::{self, DEPTH};
 use crate::model::{Model, ModelBody, ModelContact, ModelTarget};
 use crate::round_obstacles::points_between;
 
@@ -104,16 +103,13 @@ pub(crate) fn is_of_many(
     }
 }
 
-/// A contact with its points and its target by system number. `x`: reference coordinates by system number, m.
+/// A contact one way with its points and its target by system number. `x`: reference coordinates by system number, m.
 pub(crate) fn numbered(
     contact: &ModelContact,
     model: &Model,
     number: &[u32],
     x: &[[f64; 3]],
 ) -> Contact {
-    if let Some(both_ways) = both_ways::numbered(contact, model, number, x) {
-        return both_ways;
-    }
     let surface = &contact.secondary;
     let (solid, factor) = (body_of(model, surface), surface_factor(model, surface));
     let faces = |surface: &Surface| -> Vec<Face> {
@@ -229,6 +225,9 @@ fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
         false => Vec::new(),
     }
 }
+
+/// Part of the size of the elements at the edges beyond which edges of solids that are behind each other do not touch.
+pub(crate) const DEPTH: f64 = 0.25;
 
 /// Edges of both sides of a contact that may cross, by the numbers of the mesh.
 struct SharpEdges {

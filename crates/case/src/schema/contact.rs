@@ -17,7 +17,8 @@ use carom_quantities::{Coordinate, Duration, Length, SurfaceDamping, SurfaceStif
     { "required": ["self"] },
 ]))]
 pub struct Contact {
-    /// Group of the surface whose points carry the contact forces.
+    /// Group of the surface whose points carry the contact forces, which act on it. Where contact is looked for both ways (solids, `sliding` finite, at
+    /// nodes of linear faces) points are on both sides, and the choice matters little.
     pub secondary: String,
     /// Group of the surface that defines the normal.
     pub primary: Option<String>,
@@ -42,7 +43,8 @@ pub struct Contact {
     #[serde(default)]
     pub initial: Penetration,
     /// Largest penetration that counts as contact. A point is then paired only with faces of opposite normal that it
-    /// penetrates by at most this depth. For thin parts. Default: no bound; in self-contact half the thickness.
+    /// penetrates by at most this depth. For thin parts. Default: no bound; in self-contact half the thickness, where contact is looked for both ways the
+    /// least thickness of the cells at the two surfaces.
     pub depth: Option<Length>,
     /// Point, fixed in space, about which the moment of the contact force is written, as columns `contact.NAME.moment_x_n_m` … and with
     /// its largest magnitude in the summary. For two surfaces that share no nodes, in the plane and in space. Default: none.
@@ -141,7 +143,8 @@ pub enum Nodes {
 pub enum Sliding {
     /// Points keep the face and the normal of the initial configuration.
     Small,
-    /// The closest faces are determined again in each step, or in each iteration where the law needs it.
+    /// The closest faces are determined again in each step, or in each iteration where the law needs it. Between solids, at nodes, contact is looked for
+    /// both ways.
     Finite,
 }
 

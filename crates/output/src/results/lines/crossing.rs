@@ -102,7 +102,7 @@ pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
             Form::Count,
         ),
         BOUNDS,
-        "use a finer mesh where they meet, and a smaller step; take [general-contact] with by = \"materials\", which looks from both sides, or exchange `secondary` and `primary` if the primary side has the smaller faces",
+        "use a finer mesh where they meet, and a smaller step; take [general-contact], or sliding = \"finite\" with integration = \"node\", which look both ways, or exchange `secondary` and `primary` if the primary side has the smaller faces",
     ))
 }
 
@@ -140,7 +140,7 @@ pub(super) fn under_force(evidence: &Evidence) -> Finding {
             Form::Count,
         ),
         Bounds::Look(0.5),
-        "`penetration-between` says how deep; use a finer mesh where they meet, [general-contact] with by = \"materials\", which looks from both sides, or exchange `secondary` and `primary`",
+        "`penetration-between` says how deep; use a finer mesh where they meet, [general-contact] or sliding = \"finite\" with integration = \"node\", which look both ways, or exchange `secondary` and `primary`",
     ))
 }
 
