@@ -17,7 +17,9 @@ impl Contact {
         within: f64,
     ) -> Option<Opposite<'_>> {
         let edges = self.edges.as_ref()?;
-        let (item, found) = self.nearest_edge((places, tree), point, within)?;
+        let met = self.edges_met((places, tree), point, within);
+        let place = usize::from(self.points[point].is_second());
+        let (item, found) = met[place]?;
         if self.is_told((places, tree), (point, item), within) {
             return None;
         }
@@ -111,18 +113,39 @@ impl Contact {
         with_rest.filter(|(_, rest)| *rest < motion).collect()
     }
 
-    /// The first of the edges of the target that meet the edge of a point and are nearest to it, and where.
+    /// The nearest of the edges of the target that meet the edge of a point, and where: two if the edge has two points, then in the order of the target. A
+    /// second one alone is none.
+    fn edges_met(
+        &self,
+        target: (&Places, &FaceTree),
+        point: usize,
+        within: f64,
+    ) -> [Option<(u32, Meeting)>; 2] {
+        let first = self.nearest_edge(target, point, (within, None));
+        let two = (self.edges.as_ref()).is_some_and(|edges| edges.firsts[point].1);
+        let second = match &first {
+            Some((item, _)) if two => self.nearest_edge(target, point, (within, Some(*item))),
+            _ => None,
+        };
+        match (&first, &second) {
+            (Some(one), Some(other)) if other.0 < one.0 => [second, first],
+            _ => [first, second],
+        }
+    }
+
+    /// The first of the edges of the target that meet the edge of a point and are nearest to it, but for one of them, and where.
     fn nearest_edge(
         &self,
         (places, tree): (&Places, &FaceTree),
         point: usize,
-        within: f64,
+        (within, without): (f64, Option<u32>),
     ) -> Option<(u32, Meeting)> {
         let (edges, own) = (self.edges.as_ref()?, self.points[point].edge()?);
         let line = edges.line_of(places, (&self.points[point], point))?;
         let view = self.view(point);
         let (middle, half) = line.middle();
-        let at = |item: u32| match edges.is_beside(item, (&own.ends, view)) {
+        let at = |item: u32| match without == Some(item) || edges.is_beside(item, (&own.ends, view))
+        {
             true => None,
             false => meeting(&line, &edges.line(places, item), edges.depth),
         };
@@ -133,7 +156,7 @@ impl Contact {
         Some((item, at(item)?))
     }
 
-    /// Whether the point of the edge that a point faces faces its edge too, and comes first: both would tell the same.
+    /// Whether a point of the edge that a point faces faces its edge too, and comes first: both would tell the same.
     fn is_told(
         &self,
         target: (&Places, &FaceTree),
@@ -143,16 +166,18 @@ impl Contact {
         let Some(edges) = &self.edges else {
             return false;
         };
-        let Some(other) = edges.sides[item as usize].point.map(|other| other as usize) else {
+        let Some(other) = edges.sides[item as usize].point else {
             return false;
         };
-        let is_own = |item: u32| {
-            let own = self.points[point].edge();
-            own.is_some_and(|own| ordered(own.ends) == ends_of(&edges.lines[item as usize]))
+        let own = self.points[point].edge();
+        let is_own = |(item, _): &(u32, Meeting)| {
+            own.is_some_and(|own| ordered(own.ends) == ends_of(&edges.lines[*item as usize]))
         };
-        other < point
+        other < edges.firsts[point].0
             && self
-                .nearest_edge(target, other, within)
-                .is_some_and(|(item, _)| is_own(item))
+                .edges_met(target, other as usize, within)
+                .iter()
+                .flatten()
+                .any(is_own)
     }
 }

@@ -16,8 +16,8 @@
 //!
 //! Edges that run along each other, and those that cross at an end of one where no edge goes on, are left to the nodes. Where an edge goes on in another
 //! one, the first of both has what crosses at the node between them. Of what two points tell of each other, where
-//! a surface faces itself, the first one tells. A point faces one edge, the nearest: one that crosses two on the other side, as a long face
-//! of a coarse mesh over a narrow bar does, faces the other once it is the nearest.
+//! a surface faces itself, the first one tells. A point faces one edge, the nearest; an edge that may cross two on the other side, as a long face
+//! of a coarse mesh over a narrow bar does, has a second point for the other.
 
 use std::collections::BTreeMap;
 
@@ -47,6 +47,8 @@ pub struct Edges {
     pub(super) sides: Vec<Side>,
     /// Of the edge of each point, whether what crosses at its first and at its second end is its own; of other points neither.
     pub(super) own: Vec<[bool; 2]>,
+    /// Of each point of an edge the first point of the edge, and whether there is a second one; of others themselves.
+    pub(super) firsts: Vec<(u32, bool)>,
     /// Penetration beyond which nothing is a contact, m.
     pub(super) depth: f64,
     /// Gap beyond which nothing is looked for, m.
@@ -60,7 +62,7 @@ pub(super) struct Side {
     pub(super) beside: Option<[u32; 2]>,
     /// Its faces, by their numbers in the target.
     pub(super) faces: [u32; 2],
-    /// The point of the same edge, where the surface faces itself.
+    /// The first point of the same edge, where the surface faces itself.
     pub(super) point: Option<u32>,
     /// Whether what crosses at its first and at its second end is its own.
     pub(super) own: [bool; 2],
@@ -96,18 +98,36 @@ impl Edges {
     /// The edges of a target; none if there are none. `points`: of the contact, with those of edges; `x`: reference coordinates by system
     /// number, m; `depth`: penetration beyond which nothing is a contact, m.
     pub fn new(edges: &[SharpEdge], points: &[Point], x: &[[f64; 3]], depth: f64) -> Option<Edges> {
-        let of_points: Vec<[u32; 2]> = points
-            .iter()
-            .map(|point| point.edge().map_or([u32::MAX; 2], |edge| edge.ends))
-            .collect();
+        let first_ends = |point: &Point| match point.edge() {
+            Some(edge) if !point.is_second() => edge.ends,
+            _ => [u32::MAX; 2],
+        };
+        let of_points: Vec<[u32; 2]> = points.iter().map(first_ends).collect();
         let lines: Vec<[u32; 2]> = edges
             .iter()
             .map(|edge| [edge.line.nodes[0], edge.line.nodes[1]])
             .collect();
         let own_ends = owned(&lines, x);
         let own = points.iter().zip(0..);
+        let own = own.filter(|(point, _)| !point.is_second());
         let own = own.filter_map(|(point, k)| Some((ordered(point.edge()?.ends), k)));
         let own: BTreeMap<[u32; 2], u32> = own.collect();
+        let mut firsts: Vec<(u32, bool)> = (0..points.len() as u32).map(|k| (k, false)).collect();
+        for (k, point) in points
+            .iter()
+            .enumerate()
+            .filter(|(_, point)| point.is_second())
+        {
+            let first = point.edge().and_then(|edge| own.get(&ordered(edge.ends)));
+            if let Some(&first) = first {
+                firsts[k] = (first, true);
+                firsts[first as usize].1 = true;
+            }
+        }
+        let mut own_of_points = owned(&of_points, x);
+        for k in 0..points.len() {
+            own_of_points[k] = own_of_points[firsts[k].0 as usize];
+        }
         let length = |[a, b]: [u32; 2]| {
             let (a, b) = (x[a as usize], x[b as usize]);
             (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt()
@@ -123,7 +143,8 @@ impl Edges {
         (!edges.is_empty()).then(|| Edges {
             lines: edges.iter().map(|edge| edge.line).collect(),
             sides: edges.iter().zip(&own_ends).map(side).collect(),
-            own: owned(&of_points, x),
+            own: own_of_points,
+            firsts,
             depth,
             reach: REACH * longest.fold(0.0, f64::max),
         })
@@ -161,6 +182,7 @@ impl Edges {
             lines: lines.map(|line| line.renumbered(&number)).collect(),
             sides: sides.collect(),
             own: self.own.clone(),
+            firsts: self.firsts.clone(),
             ..*self
         }
     }
@@ -180,6 +202,7 @@ impl Edges {
             lines,
             sides,
             own: self.own.clone(),
+            firsts: self.firsts.clone(),
             ..*self
         })
     }

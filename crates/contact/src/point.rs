@@ -10,8 +10,8 @@ use crate::Places;
 enum Crossed {
     /// Axes of beams and sharp edges of shells among the faces of the target.
     Lines,
-    /// The edges of the contact ([`Contact::edges`](crate::Contact::edges)).
-    Edges,
+    /// The edges of the contact ([`Contact::edges`](crate::Contact::edges)): of two that it meets one, of which is the first or the second.
+    Edges { is_second: bool },
     /// A ball or a cylinder: the point is the place of a line or a face that is nearest to it.
     Round,
 }
@@ -130,7 +130,7 @@ impl Point {
     /// `area` in m²; it has no share in the surface, whose nodes stand for all of it.
     pub fn at_edge(edge: &SharpEdge, area: f64) -> Point {
         let mut point = Point {
-            crosses: Some(Crossed::Edges),
+            crosses: Some(Crossed::Edges { is_second: false }),
             ..Point::crossing(&edge.line, area)
         };
         if let Some(beside) = edge.beside {
@@ -138,6 +138,19 @@ impl Point {
             point.beside = 2;
         }
         point
+    }
+
+    /// The second point of the same edge: an edge that is long against the other body crosses two edges of it.
+    pub fn second(self) -> Point {
+        Point {
+            crosses: Some(Crossed::Edges { is_second: true }),
+            ..self
+        }
+    }
+
+    /// Whether it is the second point of an edge.
+    pub(crate) fn is_second(&self) -> bool {
+        self.crosses == Some(Crossed::Edges { is_second: true })
     }
 
     /// The place of a line of two nodes, or of a face of three or four, that is nearest to a ball or a cylinder. `beside`: of a line between faces a
@@ -174,7 +187,7 @@ impl Point {
 
     /// Whether it faces the edges of the target ([`Point::at_edge`]).
     pub fn is_at_edge(&self) -> bool {
-        self.crosses == Some(Crossed::Edges)
+        matches!(self.crosses, Some(Crossed::Edges { .. }))
     }
 
     /// Of a point of a sharp edge of a solid a further node of each of its two faces, which decide what it faces; none of others.

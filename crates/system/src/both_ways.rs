@@ -6,7 +6,7 @@
 use carom_contact::{Contact, Edges, Parts, Point, Sight, Target};
 use carom_mesh::{Face, Rim, SharpEdge, Surface};
 
-use crate::contacts::{DEPTH, at_edge, least_height, nodes, renumbered, shared, surface_factor};
+use crate::contacts::{DEPTH, at_edges, least_height, nodes, renumbered, shared, surface_factor};
 use crate::model::{Model, ModelContact, ModelTarget};
 
 /// A contact that is looked for both ways by system number; none of one that is not, of a surface that faces itself, which its points see from all
@@ -40,13 +40,14 @@ pub(crate) fn numbered(
         _ => Vec::new(),
     };
     let first = sides[0].faces.len();
-    points.extend(sharp.iter().map(|edge| {
-        let point = at_edge(edge, mesh, number);
-        match (edge.faces[0] as usize) < first {
-            true => point,
-            false => point.on_primary(),
-        }
-    }));
+    points.extend(
+        at_edges((&both, &sharp), mesh, number)
+            .into_iter()
+            .map(|(edge, point)| match (edge.faces[0] as usize) < first {
+                true => point,
+                false => point.on_primary(),
+            }),
+    );
     let own = sharp.iter();
     let own = own.map(|edge| edge.renumbered(|node| number[node as usize]));
     let own: Vec<SharpEdge> = own.collect();

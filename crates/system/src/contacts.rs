@@ -134,8 +134,11 @@ pub(crate) fn numbered(
                 let between = points_between(contact, (&model.mesh, number), &points);
                 points.extend(between);
             }
-            let own = sharp.iter().flat_map(|sharp| &sharp.secondary);
-            points.extend(own.map(|edge| at_edge(edge, &model.mesh, number)));
+            if let Some(sharp) = &sharp {
+                let own = (surface, &sharp.secondary[..]);
+                let own = at_edges(own, &model.mesh, number);
+                points.extend(own.into_iter().map(|(_, point)| point));
+            }
             (points, None)
         }
         Integration::Points | Integration::Weak { .. } => {
@@ -229,6 +232,9 @@ fn crossed(contact: &ModelContact, model: &Model) -> Vec<Face> {
 /// Part of the size of the elements at the edges beyond which edges of solids that are behind each other do not touch.
 pub(crate) const DEPTH: f64 = 0.25;
 
+/// Length of an edge over the least height of the cells at the edges, from which on it has a second point: rounding of cubes aside.
+const LONG: f64 = 1.01;
+
 /// Edges of both sides of a contact that may cross, by the numbers of the mesh.
 struct SharpEdges {
     secondary: Vec<SharpEdge>,
@@ -274,11 +280,24 @@ pub(crate) fn least_height((surface, edges): (&Surface, &[SharpEdge]), mesh: &Me
     heights.fold(f64::INFINITY, f64::min)
 }
 
-/// The point of a sharp edge; it stands for a square of half its length.
-pub(crate) fn at_edge(edge: &SharpEdge, mesh: &Mesh, number: &[u32]) -> Point {
-    let half = 0.5 * edge.length(&mesh.nodes);
-    let edge = edge.renumbered(|node| number[node as usize]);
-    Point::at_edge(&edge, half * half)
+/// The points of sharp edges, first one of each, then a second one of those that are longer than the bodies are thick at them: they may cross two edges.
+/// Each stands for a square of half its length.
+pub(crate) fn at_edges<'a>(
+    (surface, edges): (&Surface, &'a [SharpEdge]),
+    mesh: &Mesh,
+    number: &[u32],
+) -> Vec<(&'a SharpEdge, Point)> {
+    let point = |edge: &SharpEdge| {
+        let half = 0.5 * edge.length(&mesh.nodes);
+        let edge = edge.renumbered(|node| number[node as usize]);
+        Point::at_edge(&edge, half * half)
+    };
+    let thin = least_height((surface, edges), mesh);
+    let long = edges.iter();
+    let long = long.filter(|edge| edge.beside.is_none() || edge.length(&mesh.nodes) > LONG * thin);
+    let second = long.map(|edge| (edge, point(edge).second()));
+    let first = edges.iter().map(|edge| (edge, point(edge)));
+    first.chain(second).collect()
 }
 
 /// Axes of beams and sharp edges of shells.

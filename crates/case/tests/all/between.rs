@@ -4,14 +4,10 @@ use carom_output::Grade;
 
 use crate::verdict::result;
 
-#[test]
-fn a_pin_between_the_nodes_of_a_coarse_floor_is_told_of_a_rigid_floor_too() {
-    for (rigid, held, on) in [
-        ("", r#"["x", "y"]"#, "floor.bottom"),
-        (", rigid = {}", r#"["x", "y", "rz"]"#, "floor"),
-    ] {
-        let case = format!(
-            r#"
+/// A narrow pin on a wide face of a floor, between two nodes of it; `contact`: what lets them touch.
+fn pinned((rigid, held, on): (&str, &str, &str), contact: &str) -> String {
+    format!(
+        r#"
 carom = 1
 mesh.generate.floor.rectangle = {{ origin = [0.0, 0.0], size = [2.0, 0.2], elements = [2, 1] }}
 mesh.generate.pin.rectangle = {{ origin = [0.4, 0.201], size = [0.2, 0.2], elements = [2, 2] }}
@@ -19,10 +15,46 @@ material.m = {{ density = 1000.0, elastic = {{ young = "1 GPa", poisson = 0.3 }}
 body.floor = {{ region = "floor", material = "m", section.plane-strain.thickness = 1.0{rigid} }}
 body.pin = {{ region = "pin", material = "m", section.plane-strain.thickness = 1.0, initial.velocity = [0.0, -1.0] }}
 support.f = {{ on = "{on}", fix = {held} }}
-contact.c = {{ secondary = "floor.top", primary = "pin.bottom", law.velocity = {{}}, sliding = "finite", integration = "quadrature" }}
+{contact}
 time = {{ end = 0.064, step = 2e-4, scheme.theta = {{}} }}
 "#
+    )
+}
+
+/// At nodes with finite sliding contact is looked for both ways: the pin touches the floor after 1 mm at 1 m/s, whichever side is called secondary, and
+/// the same equations give the same force.
+#[test]
+fn the_side_called_secondary_does_not_decide_whether_there_is_contact() {
+    let on = ("", r#"["x", "y"]"#, "floor.bottom");
+    let forces = [("floor.top", "pin.bottom"), ("pin.bottom", "floor.top")].map(|sides| {
+        let contact = format!(
+            r#"contact.c = {{ secondary = "{}", primary = "{}", law.velocity = {{}}, sliding = "finite" }}"#,
+            sides.0, sides.1
         );
+        let (summary, histories) = result(&pinned(on, &contact));
+        let first = summary.contacts["c"].first_closing.unwrap();
+        assert!((first - 1e-3).abs() <= 2e-4, "{first}");
+        // the force is that on the secondary body, 200 kg/m are thrown up
+        let up = histories["contact.c.resultant_y_n"].iter().sum::<f64>();
+        assert_eq!(up > 0.0, sides.0 == "pin.bottom");
+        histories["contact.c.force_n"].clone()
+    });
+    let largest = forces[0]
+        .iter()
+        .fold(0.0_f64, |most, force| most.max(*force));
+    for (one, other) in forces[0].iter().zip(&forces[1]) {
+        assert!((one - other).abs() < 1e-9 * largest, "{one} {other}");
+    }
+}
+
+#[test]
+fn a_pin_between_the_nodes_of_a_coarse_floor_is_told_of_a_rigid_floor_too() {
+    for (rigid, held, on) in [
+        ("", r#"["x", "y"]"#, "floor.bottom"),
+        (", rigid = {}", r#"["x", "y", "rz"]"#, "floor"),
+    ] {
+        let contact = r#"contact.c = { secondary = "floor.top", primary = "pin.bottom", law.velocity = {}, sliding = "finite", integration = "quadrature" }"#;
+        let case = pinned((rigid, held, on), contact);
         let summary = result(&case).0;
         let line = summary.verdict.line("penetration-between");
         let line = line.unwrap_or_else(|| panic!("{on}: {:#?}", summary.verdict));

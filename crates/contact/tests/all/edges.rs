@@ -271,6 +271,62 @@ fn two_edges_of_one_surface_tell_their_contact_once() {
     }
 }
 
+/// One edge of the upper bar, which comes down flat on a bar that lies on a face: it crosses both upper edges of that. With two points it has both, with
+/// one it has the nearer one; from the other side each of both edges has it.
+#[test]
+fn an_edge_that_crosses_two_has_two_points() {
+    let mut mesh = generate::box_("a", [-1.0, -0.2, -0.4], [2.0, 0.4, 0.4], [1, 1, 1], false);
+    let mut upper = generate::box_("b", [-1.0, -0.2, -0.2], [2.0, 0.4, 0.4], [1, 1, 1], false);
+    let half = 0.5_f64.sqrt();
+    for x in &mut upper.nodes {
+        let [along, across, up] = *x;
+        let (across, up) = (half * (across - up), half * (across + up));
+        *x = [-across, along, up + 0.2 * 2.0_f64.sqrt() + 0.05];
+    }
+    mesh.merge("b", upper).unwrap();
+    let [lower, upper] = ["a", "b"].map(|name| Surface::outer(&mesh, &mesh.groups[name].elements));
+    let x = &mesh.nodes;
+    let unknowns = Unknowns::translations(3, x.len());
+    let still = vec![0.0; unknowns.len()];
+    let places = Places {
+        unknowns: &unknowns,
+        time: 0.0,
+        x,
+        u: &still,
+        frames: Frames::default(),
+    };
+    let gaps = |of: &Surface, on: &Surface, twice: bool| {
+        let edges = of.sharp_edges_of_solids(&mesh);
+        let mut points: Vec<Point> = edges.iter().map(|edge| Point::at_edge(edge, 1.0)).collect();
+        if twice {
+            let second: Vec<Point> = points.iter().map(|point| point.second()).collect();
+            points.extend(second);
+        }
+        let edges = Edges::new(&on.sharp_edges_of_solids(&mesh), &points, x, DEPTH);
+        let contact = Contact {
+            edges,
+            ..contact(points, Target::Surface(on.faces.clone()))
+        };
+        let pairing = paired(&contact, &places);
+        let facing = facing(&pairing).into_iter();
+        let gaps: Vec<f64> = facing.map(|point| pairing.rows.gap(point)).collect();
+        gaps
+    };
+    for (of, on, twice, count) in [
+        (&upper, &lower, false, 1),
+        (&upper, &lower, true, 2),
+        (&lower, &upper, false, 2),
+        (&lower, &upper, true, 2),
+    ] {
+        let found = gaps(of, on, twice);
+        assert_eq!(found.len(), count);
+        assert!(
+            found.iter().all(|gap| (gap - 0.05).abs() < 1e-15),
+            "{found:?}"
+        );
+    }
+}
+
 /// Points that rest are those that would have been found far.
 #[test]
 fn near_edges_are_those_of_all_that_are_within_reach() {
