@@ -9,6 +9,20 @@ use crate::sight::Parts;
 use crate::{Contact, Integration, Point, Sight, Sliding, Target};
 
 impl Contact {
+    /// A contact that looks both ways as nodes of its secondary side, the first of its points, that see all of the primary one, at any depth. `secondary`: number of
+    /// its faces.
+    pub fn one_way(&self, secondary: usize) -> Contact {
+        let points = self.points.iter();
+        let own = points.take_while(|point| !point.is_on_primary() && !point.crosses());
+        Contact {
+            points: own.copied().collect(),
+            target: Target::Surface(self.faces_of_primary(secondary).to_vec()),
+            edges: None,
+            sight: None,
+            ..self.clone()
+        }
+    }
+
     /// The nodes of the primary surface as points that face the secondary one, up to a `depth` (m) behind it; none of surfaces that face
     /// themselves, lie around axes or middles or keep what they were paired with, and where gaps count from elsewhere. `secondary`: its faces, by
     /// system number; `x`: reference coordinates by system number, m.

@@ -182,6 +182,8 @@ pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
         let fits = named.is_some()
             && contact.sliding == Sliding::Finite
             && contact.integration == Integration::Node
+            // what overlaps is let out at any depth
+            && contact.initial == Initial::Touch
             && sides.iter().all(|side| side.faces.iter().all(plain))
             && !Sight::is_needed(&contact.secondary.faces, &primary.faces);
         if !fits {

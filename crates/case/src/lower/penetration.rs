@@ -38,7 +38,14 @@ pub(super) fn at_start(context: &Context, system: &System, problems: &mut Proble
             }
             continue;
         }
-        let deep = contact.penetrations(&places, slack);
+        let mut deep = Vec::new();
+        if contact.looks_both_ways() && given.is_some_and(|given| given.depth.is_none()) {
+            let one_way = contact.one_way(contact.secondary_faces.len());
+            deep = one_way.penetrations(&places, slack);
+        }
+        if deep.is_empty() {
+            deep = contact.penetrations(&places, slack);
+        }
         let Some(deepest) = deep.iter().min_by(|a, b| b.depth.total_cmp(&a.depth)) else {
             continue;
         };

@@ -1,5 +1,6 @@
 //! What gets between the points of a secondary side is told, whatever body has that side.
 
+use carom_case::{Input, build, parse};
 use carom_output::Grade;
 
 use crate::verdict::result;
@@ -45,6 +46,21 @@ fn the_side_called_secondary_does_not_decide_whether_there_is_contact() {
     for (one, other) in forces[0].iter().zip(&forces[1]) {
         assert!((one - other).abs() < 1e-9 * largest, "{one} {other}");
     }
+}
+
+/// Deeper than an element, where points in the run do not see what they are behind.
+#[test]
+fn a_deep_overlap_at_the_start_is_refused() {
+    let on = ("", r#"["x", "y"]"#, "floor.bottom");
+    let contact = r#"contact.c = { secondary = "pin.bottom", primary = "floor.top", law.velocity = {}, sliding = "finite" }"#;
+    let case = pinned(on, contact);
+    let case = case.replace("[0.4, 0.201]", "[0.4, 0.05]");
+    let case = case.replace("elements = [2, 1]", "elements = [2, 4]");
+    let input = Input::from_text("case.toml", &case, &[]);
+    let (case, locator) = parse(&input).unwrap();
+    let problems = build(&case, &locator, &input).err().unwrap();
+    let told = problems[0].to_string();
+    assert!(told.contains("3 points penetrate at the start"), "{told}");
 }
 
 #[test]
