@@ -1,4 +1,4 @@
-//! The points at which a contact is looked at: nodes of the secondary surface, or Gauss points of its faces.
+//! The points at which a contact is looked at: nodes of the secondary surface or of both, Gauss points of faces, places between nodes.
 
 use carom_elements::{Kind, MAX_FACE_NODES, map};
 use carom_mesh::{Face, SharpEdge};
@@ -146,6 +146,11 @@ impl Point {
             crosses: Some(Crossed::Edges { is_second: true }),
             ..self
         }
+    }
+
+    /// Whether it stands for no part of the surface, which nodes stand for: it faces edges or what is round from between these.
+    pub fn stands_between(&self) -> bool {
+        self.is_at_edge() || self.faces_round()
     }
 
     /// Whether it is the second point of an edge.

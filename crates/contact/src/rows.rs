@@ -80,7 +80,7 @@ impl Rows {
         self.gaps[point]
     }
 
-    /// Unit normal at a point, from the primary side to the secondary one.
+    /// Unit normal at a point, from what it faces to its own side.
     pub fn normal(&self, point: usize) -> [f64; 3] {
         self.normals[point]
     }

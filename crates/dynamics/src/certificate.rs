@@ -320,10 +320,7 @@ impl Certificate {
             [CoreOwner::Body(_), CoreOwner::Body(_)] => {
                 let mut contacts = system.contacts.iter();
                 contacts.position(|contact| {
-                    let Target::Surface(target) = &contact.target else {
-                        return false;
-                    };
-                    let own = &contact.secondary_faces;
+                    let (own, target) = (&contact.secondary_faces, contact.primary_faces());
                     let both = |a: u32, b: u32| on(own, a) && on(target, b);
                     both(of[0], of[1]) || both(of[1], of[0])
                 })

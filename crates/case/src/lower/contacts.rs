@@ -157,7 +157,7 @@ pub(super) fn default_sliding(context: &Context, contacts: &mut [ModelContact], 
     }
 }
 
-/// Lets contacts between solids that follow their motion be looked for both ways, at nodes, where no cells are deleted and one scheme has both sides.
+/// Lets contacts between solids that follow their motion be looked for both ways, at nodes, where no cells are deleted; in models without zones.
 pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
     let Model {
         contacts,
@@ -182,6 +182,8 @@ pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
         let fits = named.is_some()
             && contact.sliding == Sliding::Finite
             && contact.integration == Integration::Node
+            // the shares of the points of one side add up to the whole
+            && !contact.law.get().is_of_the_whole()
             // what overlaps is let out at any depth
             && contact.initial == Initial::Touch
             && sides.iter().all(|side| side.faces.iter().all(plain))
@@ -196,7 +198,7 @@ pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
         let deletes = [one, other]
             .iter()
             .any(|&body| bodies[body].spec.deletion.is_some());
-        if deletes || context.plan.zone_of(one) != context.plan.zone_of(other) {
+        if deletes {
             continue;
         }
         contact.both_ways = true;

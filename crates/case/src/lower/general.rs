@@ -230,6 +230,7 @@ fn between(
     let zones = [one, other].map(|part| plan.zone_of(part.bodies[0]));
     let both_ways = (itself || zones[0] == zones[1])
         && !quadratic
+        && !law.get().is_of_the_whole()
         && [one, other].iter().any(|part| part.is_solid());
     let parts = many.then(|| apart.parts((secondary, primary), |body| folds(&scope.bodies[body])));
     Some(ModelContact {

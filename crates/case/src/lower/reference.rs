@@ -179,7 +179,9 @@ fn solve(
         gap
     };
     let normal = rows.normal(0);
-    let area: f64 = contact.points.iter().map(|point| point.area).sum();
+    let own = contact.points.iter();
+    let own = own.filter(|point| !point.is_on_primary() && !point.crosses());
+    let area: f64 = own.map(|point| point.area).sum();
     let solid = |body: usize| system.bodies[body].as_solid();
     let width = |body: usize| solid(body).map_or(1.0, |solid| width(solid.kinematics()));
     let one = bar(system, &one, normal, (sides, area))?;

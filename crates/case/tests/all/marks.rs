@@ -50,8 +50,7 @@ fn the_model_of_the_report_has_names_of_what_acts_on_it() {
         [
             ("body", "floor", 6, 0),
             ("body", "strip", 10, 0),
-            // nodes of both sides
-            ("contact", "contact gap", 8, 0),
+            ("contact", "contact gap", 5, 0),
             ("link", "spring hook", 2, 0),
             ("load", "load push", 2, 6),
             ("mass", "mass weight", 1, 0),

@@ -340,7 +340,9 @@ impl SurfaceGrid {
             return SurfaceGrid::of_points(system, contact, points);
         }
         let nodes: Vec<u32> = points.iter().map(Point::node).collect();
-        let mut places: Vec<(u32, u32)> = nodes.iter().copied().zip(0..).collect();
+        let numbered = nodes.iter().copied().zip(0..).zip(points);
+        let at_nodes = numbered.filter(|(_, point)| !point.crosses());
+        let mut places: Vec<(u32, u32)> = at_nodes.map(|(place, _)| place).collect();
         places.sort_unstable();
         let place = |node: &u32| {
             let found = places.binary_search_by_key(node, |(node, _)| *node);

@@ -336,7 +336,10 @@ fn at_points(system: &System, points: &[(usize, f64)], state: &State) -> [Cell<'
     for &(number, weight) in points {
         let (contact, own) = system.point(number);
         force += weight * interface.force[number];
-        area += weight * contact.points[own].area;
+        // nodes stand for the whole surface
+        if !contact.points[own].stands_between() {
+            area += weight * contact.points[own].area;
+        }
         gap = gap.min(interface.gap[number]);
     }
     let pressure = (area > 0.0).then_some(force / area);

@@ -88,26 +88,31 @@ pub fn contact_point(
     let index = chosen.or(reference.map(|reference| reference.contact));
     let index = index.unwrap_or(0);
     let contact = system.contacts.get(index)?;
-    let total: f64 = contact.points.iter().map(|point| point.area).sum();
+    let own = || contact.points.iter().filter(|point| !point.is_on_primary());
+    let total: f64 = own().map(|point| point.area).sum();
     let at_rest = vec![0.0; system.unknowns()];
     let places = system.places(0.0, &at_rest, &system.initial.frames);
     let mut centroid = [0.0; 3];
-    for point in &contact.points {
+    for point in own() {
         let place = point.place(&places);
         for i in 0..3 {
             centroid[i] += point.area / total * place[i];
         }
     }
-    let secondary = nearest(system, contact.points.iter().map(Point::node), &centroid)?;
+    let secondary = nearest(system, own().map(Point::node), &centroid)?;
     let place = system.x[secondary as usize];
     let primary = match &contact.target {
         Target::Rigid(_) => None,
-        Target::Surface(faces) => {
-            let corners = faces.iter().flat_map(|face| face.corners().iter().copied());
+        Target::Surface(_) => {
+            let corners = contact
+                .primary_faces()
+                .iter()
+                .flat_map(|face| face.corners().iter().copied());
             // of a surface that faces itself both would be the same node, or neighbours
             let part =
                 |node: u32| system.part_of(system.unknowns.first(system.unknowns.moved_by(node)));
-            let own = contact.has_both_sides().then(|| part(secondary));
+            let faces_itself = contact.has_both_sides() && !contact.looks_both_ways();
+            let own = faces_itself.then(|| part(secondary));
             nearest(
                 system,
                 corners.filter(|&node| own != Some(part(node))),

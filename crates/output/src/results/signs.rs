@@ -85,12 +85,16 @@ fn loads(system: &System) -> impl Iterator<Item = Sign> {
 fn contacts(system: &System) -> Vec<Sign> {
     let mut all = Vec::new();
     for contact in &system.contacts {
-        let nodes = contact.points.iter().flat_map(|point| point.carriers());
+        let own = contact.points.iter().filter(|point| !point.is_on_primary());
+        let nodes = own.flat_map(|point| point.carriers());
         let nodes = nodes.map(|(node, _)| node).collect();
         let label = format!("contact {}", contact.name);
         all.push(sign(system, What::Contact, label, nodes));
-        if let Target::Surface(faces) = &contact.target {
-            let nodes = faces.iter().flat_map(|face| face.corners());
+        if let Target::Surface(_) = &contact.target {
+            let nodes = contact
+                .primary_faces()
+                .iter()
+                .flat_map(|face| face.corners());
             let nodes = nodes.copied().collect();
             all.push(sign(system, What::Primary, String::new(), nodes));
         }

@@ -105,6 +105,7 @@ impl Contacts {
             }
         }
         self.active = active;
+        self.telling.begin_choice();
         self.leave_to_others(attempt, 0);
     }
 

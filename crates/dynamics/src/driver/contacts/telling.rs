@@ -18,6 +18,8 @@ pub(super) struct Telling {
     left: Vec<u32>,
     /// Ascending.
     back: Vec<u32>,
+    /// Those that left in the last choice; ascending.
+    gone: Vec<u32>,
 }
 
 impl Telling {
@@ -57,10 +59,24 @@ impl Telling {
     pub(super) fn begin(&mut self) {
         self.left.clear();
         self.back.clear();
+        self.gone.clear();
+    }
+
+    /// Begins a choice of candidates.
+    pub(super) fn begin_choice(&mut self) {
+        self.gone.clear();
     }
 
     /// Whether a point leaves its contact to others, where it `may`.
     pub(super) fn leaves(&mut self, point: u32, may: bool) -> bool {
+        let leaves = self.remember(point, may);
+        if let (true, Err(place)) = (leaves, self.gone.binary_search(&point)) {
+            self.gone.insert(place, point);
+        }
+        leaves
+    }
+
+    fn remember(&mut self, point: u32, may: bool) -> bool {
         match (may, self.left.binary_search(&point)) {
             (false, Err(_)) => false,
             (true, Err(place)) => {
@@ -77,9 +93,9 @@ impl Telling {
         }
     }
 
-    /// Whether a point has left its contact, and is not back.
+    /// Whether a point has left its contact in the last choice.
     pub(super) fn has_left(&self, point: u32) -> bool {
-        self.left.binary_search(&point).is_ok() && self.back.binary_search(&point).is_err()
+        self.gone.binary_search(&point).is_ok()
     }
 }
 
@@ -92,10 +108,11 @@ mod tests {
         let mut telling = Telling::default();
         let mut told: Vec<bool> = Vec::new();
         for may in [false, true, true, false, true, false, true] {
+            telling.begin_choice();
             told.push(!telling.leaves(3, may));
+            assert_eq!(telling.has_left(3), told.last() == Some(&false));
         }
         assert_eq!(told, [true, false, false, true, true, true, true]);
-        assert!(!telling.has_left(3));
         assert!(telling.leaves(4, true), "of others nothing is known");
         assert!(telling.has_left(4));
         telling.begin();

@@ -373,7 +373,8 @@ fn box_of(system: &System, results: &Results) -> Vec<Near> {
     let of = |contact: &ContactPair| {
         let [mut low, mut high] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
         for (still, _) in &all {
-            for node in contact.points.iter().map(carom_contact::Point::node) {
+            let own = contact.points.iter().filter(|point| !point.is_on_primary());
+            for node in own.map(carom_contact::Point::node) {
                 let Some(place) = seen.node(node) else {
                     continue;
                 };

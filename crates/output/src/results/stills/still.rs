@@ -221,6 +221,10 @@ fn contact(system: &System, seen: &Seen, interface: &InterfaceState) -> Vec<(f32
             true => force / point.area,
             false => 0.0,
         };
+        // of a point between nodes that is open nothing is to be seen
+        if point.stands_between() && !closed {
+            continue;
+        }
         for (node, weight) in point.carriers().filter(|(_, weight)| *weight > 0.0) {
             let Some(place) = seen.node(node) else {
                 continue;
