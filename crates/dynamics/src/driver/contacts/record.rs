@@ -75,7 +75,11 @@ impl Contacts {
             &attempt.state.interface.force,
             &attempt.next.interface.force,
         ];
-        let closed = |k: usize| forces.iter().any(|force| force[first + k] != 0.0);
+        // those that leave their contact to others are held by these
+        let closed = |k: usize| {
+            let forces = || forces.iter().any(|force| force[first + k] != 0.0);
+            self.telling.has_left((first + k) as u32) || forces()
+        };
         let passed = match self.active.own_of(number) {
             Own::All if 2.0 * contact.way(ways) <= depth => 0,
             Own::All => contact.passed(ways, 0..contact.points.len(), closed),
