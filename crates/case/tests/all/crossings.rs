@@ -194,3 +194,14 @@ fn bodies_that_fly_towards_each_other_are_told_before_the_run() {
         );
     }
 }
+
+/// Two spheres are pressed together in one static step. Nodes of one side tell the contact, and those of the other, which leave it to them and have no
+/// force, have not passed anything.
+#[test]
+fn points_that_leave_their_contact_have_passed_nothing() {
+    let summary = summary("../../cases/hertz", &[]);
+    let found = found(&summary.verdict, "crossing");
+    assert!(found.is_none_or(|(_, value)| value == 0.0), "{found:?}");
+    assert_eq!(summary.verdict.grade, Grade::Good);
+    assert_eq!(summary.time.rejected.passage, 0);
+}
