@@ -53,6 +53,8 @@ pub struct Edges {
     pub(super) depth: f64,
     /// Gap beyond which nothing is looked for, m.
     pub(super) reach: f64,
+    /// The most that the surface is away from an edge, m.
+    widest: f64,
 }
 
 /// What is known of an edge.
@@ -147,6 +149,10 @@ impl Edges {
             firsts,
             depth,
             reach: REACH * longest.fold(0.0, f64::max),
+            widest: edges
+                .iter()
+                .filter_map(|edge| edge.line.radius)
+                .fold(0.0, f64::max),
         })
     }
 
@@ -167,8 +173,7 @@ impl Edges {
 
     /// The most that the surface is away from an edge, m.
     pub(crate) fn widest(&self) -> f64 {
-        let radii = self.lines.iter().filter_map(|line| line.radius);
-        radii.fold(0.0, f64::max)
+        self.widest
     }
 
     /// The same with nodes in other numbers.

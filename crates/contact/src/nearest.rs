@@ -97,7 +97,7 @@ fn on_line(point: &Point, (x, places): (&[[f64; 3]], &Places), around: &Around) 
         out.dot(&way) >= -LEVEL * out.norm() * way.norm()
     };
     let counts = turned && xi.abs() < 1.0 - AT_END && point.nodes_beside().iter().all(leads_away);
-    (point.moved_on(Kind::Bar2, &[xi, 0.0, 0.0]), counts)
+    (point.moved_to(xi), counts)
 }
 
 fn on_face(point: &Point, x: &[[f64; 3]], centre: &[f64; 3]) -> (Point, bool) {

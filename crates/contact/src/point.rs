@@ -184,7 +184,7 @@ impl Point {
         &self.nodes[self.count..self.count + self.beside]
     }
 
-    /// The point at another place of its line or face.
+    /// The point at another place of its face.
     pub(crate) fn moved_on(mut self, kind: Kind, xi: &[f64; 3]) -> Point {
         (kind.table().shape)(xi, &mut self.shape[..self.count]);
         self
