@@ -152,7 +152,8 @@ fn nearest(system: &System, nodes: impl Iterator<Item = u32>, to: &[f64; 3]) -> 
     nodes.min_by(|a, b| squared(*a).total_cmp(&squared(*b)))
 }
 
-/// Normal at a secondary node at the start; where it faces nothing yet, the way to the primary node.
+/// Normal at a secondary node at the start, or at the place between nodes that is nearer to what it faces than any node is; where nothing faces anything
+/// yet, the way to the primary node.
 fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>) -> [f64; 3] {
     let places = system.places(0.0, &system.initial.displacement, &system.initial.frames);
     let mut rows = Rows::default();
@@ -164,6 +165,12 @@ fn normal(system: &System, contact: usize, secondary: u32, primary: Option<u32>)
         .filter(|(_, point)| point.node() == secondary)
         .map(|(point, _)| rows.normal(point));
     let mut n = normals.find(|n| *n != [0.0; 3]).unwrap_or_default();
+    let nearest = (0..rows.len()).min_by(|&a, &b| rows.gap(a).total_cmp(&rows.gap(b)));
+    let between =
+        |&point: &usize| rows.gap(point).is_finite() && contact.points[point].stands_between();
+    if let Some(point) = nearest.filter(between) {
+        n = rows.normal(point);
+    }
     if let Some(primary) = primary.filter(|_| n == [0.0; 3]) {
         n = [0, 1, 2].map(|i| system.x[primary as usize][i] - system.x[secondary as usize][i]);
     }
