@@ -8,6 +8,9 @@ const MARGIN: f64 = 0.06;
 /// A range is clipped to percentiles if the full one is this many times as long.
 const SPIKY: f64 = 1.6;
 
+/// Part of the full range below which what is usual is rounding beside the spikes, not a curve.
+const ROUNDING: f64 = 1e-12;
+
 /// Smaller numbers are drawn and prefixed as if they were none: a range of them, or a factor that brings them near one, would
 /// lose its digits below the smallest normal number, 2.2e-308.
 const NOTHING: f64 = 1e-290;
@@ -113,7 +116,8 @@ pub fn shown(panel: &Panel) -> Shown {
     let Some((usual_low, usual_high)) = extremes(of(Role::Exact).chain(usual)) else {
         return everything;
     };
-    if high - low <= SPIKY * (usual_high - usual_low) || usual_high <= usual_low {
+    let usual = usual_high - usual_low;
+    if high - low <= SPIKY * usual || usual <= ROUNDING * (high - low) {
         return everything;
     }
     let margin = MARGIN * (usual_high - usual_low);
@@ -225,11 +229,34 @@ fn label(quantity: &str, unit: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::Curve;
 
     const FORCE: Axis = Axis {
         quantity: "contact force",
         unit: "N",
     };
+
+    /// A spike over nothing but rounding is all that there is; over a curve it is left out.
+    #[test]
+    fn a_spike_over_rounding_is_shown() {
+        let x: Vec<f64> = (0..500).map(f64::from).collect();
+        for (usual, is_shown) in [(1e-9, true), (1.0, false)] {
+            let mut y: Vec<f64> = x.iter().map(|x| usual * x.sin()).collect();
+            y[100] = 1e5;
+            let panel = Panel {
+                title: String::new(),
+                ordinate: FORCE,
+                curves: vec![Curve {
+                    name: "a",
+                    x: &x,
+                    y: &y,
+                    role: Role::Computed,
+                }],
+                clip: true,
+            };
+            assert_eq!(shown(&panel).beyond.is_none(), is_shown);
+        }
+    }
 
     #[test]
     fn a_zero_has_no_sign() {
