@@ -31,8 +31,9 @@ pub trait Attempts {
     /// Whether the energy that the scheme balances, less the work from outside, exceeds its value at the start of the run by more
     /// than this fraction of the largest energy, at the end of the attempt.
     fn grows(&self, fraction: f64) -> bool;
-    /// Whether a point passed what it faces in the attempt, without a force: a smaller step sees it come behind that.
-    fn passes(&self) -> bool;
+    /// Looks at whether bodies go through each other in the attempt, which is the one that is taken unless it is dropped; whether a smaller step may
+    /// keep them apart: a point passed what it faces without a force, or surfaces cross that a contact is between.
+    fn passes(&mut self) -> bool;
     /// Gives back what an attempt that is dropped has changed.
     fn withdraw(&mut self);
     /// Number and time (s) of the state.
@@ -67,13 +68,16 @@ pub fn adapt(
                 let cuts = rules.closing == Closing::Cut && attempts <= CUTS;
                 let sizes = [dt, control.dt, taken];
                 let cut = cuts.then(|| cut(rules, run.first_cut(rules, control.dt), sizes));
-                let grows = || rules.growth.is_some_and(|fraction| run.grows(fraction));
                 match cut.flatten() {
                     Some(size) => Some((Event::Closing, size)),
-                    None if 0.5 * dt >= rules.smallest && run.passes() => {
+                    // asked of each attempt: who looks takes note of it
+                    None if run.passes() && 0.5 * dt >= rules.smallest => {
                         Some((Event::Passage, dt))
                     }
-                    None => grows().then_some((Event::Growth, dt)),
+                    None => {
+                        let grows = rules.growth.is_some_and(|fraction| run.grows(fraction));
+                        grows.then_some((Event::Growth, dt))
+                    }
                 }
             }
         };
@@ -99,7 +103,7 @@ pub fn adapt(
 pub enum Event {
     /// A contact closes within it.
     Closing,
-    /// A point passed what it faces.
+    /// Bodies went through each other.
     Passage,
     /// Energy grew.
     Growth,
@@ -118,7 +122,7 @@ pub struct Control {
     pub range: [f64; 2],
     /// Attempts dropped because a contact closed within the step.
     pub cut: u64,
-    /// Attempts dropped because a point passed what it faces.
+    /// Attempts dropped because bodies went through each other.
     pub passed: u64,
     /// Attempts dropped because energy grew.
     pub grown: u64,

@@ -56,7 +56,7 @@ use carom_system as system;
 pub use replicated::Alike;
 
 pub use carom_signals::{Amplitude, Held};
-pub use certificate::{Certificate, Crossing, Told};
+pub use certificate::{Certificate, Crossing, Findings, Told};
 pub use control::{Attempts, Control, Event, adapt};
 pub use costs::{Costs, LONGEST, Phases, Work};
 pub use coulomb::{FrictionFailure, FrictionProblem, FrictionSolution, Slip, Tangential};

@@ -4,6 +4,7 @@ use carom_algebra::Interrupt;
 use carom_ranks::Ranks;
 use serde::Serialize;
 
+use crate::certificate::Certificate;
 use crate::costs::Costs;
 use crate::coulomb::FrictionProblem;
 use crate::error::Error;
@@ -32,6 +33,8 @@ pub trait Stepper {
     fn saved(&self) -> Result<Vec<u8>, Error>;
     /// What the run cost so far.
     fn costs(&self) -> Costs;
+    /// Who looks at whether bodies pass through each other; none before the first step, and where no process has whole states.
+    fn certificate(&self) -> Option<&Certificate>;
     /// The contact problem that made the last step fail.
     fn failed_problem(&self) -> Option<FailedProblem<'_>>;
     /// Whether the run goes on: where several processes take the steps as the first of them says, unless it has failed on any; else `own`. All
@@ -165,13 +168,6 @@ pub trait Observer {
     /// # Errors
     /// Whatever keeps it from its work; the run ends.
     fn accepted(&mut self, run: &dyn Stepper) -> Result<(), Error>;
-    /// Called before the first step of a run that goes on, with the state from which it does.
-    ///
-    /// # Errors
-    /// Whatever keeps it from its work; the run ends.
-    fn resumed(&mut self, _run: &dyn Stepper) -> Result<(), Error> {
-        Ok(())
-    }
     /// Called once at the end, after a failed run too. The state of `run` is the last good one.
     ///
     /// # Errors
@@ -239,15 +235,7 @@ pub fn go_on(
     observers: &mut [&mut dyn Observer],
     stop: &dyn Fn() -> bool,
 ) -> Result<Outcome, Error> {
-    let told = observers
-        .iter_mut()
-        .try_for_each(|observer| observer.resumed(run));
-    if let Err(error) = &told {
-        // other ranks wait before their first step
-        let cause = error.to_string();
-        run.agree(Going::Failed { rank: 0, cause });
-    }
-    let result = told.and_then(|()| steps(run, end, observers, stop));
+    let result = steps(run, end, observers, stop);
     finish(run, observers, result)
 }
 

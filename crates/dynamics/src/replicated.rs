@@ -3,6 +3,7 @@
 use carom_algebra::fingerprint::Fingerprint;
 use carom_ranks::Ranks;
 
+use crate::certificate::Certificate;
 use crate::costs::Costs;
 use crate::error::Error;
 use crate::march::{FailedProblem, Going, Stepper};
@@ -69,6 +70,10 @@ impl Stepper for Alike<'_> {
 
     fn costs(&self) -> Costs {
         self.run.costs()
+    }
+
+    fn certificate(&self) -> Option<&Certificate> {
+        self.run.certificate()
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {

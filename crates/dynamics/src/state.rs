@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::assembly_energy::AssemblyEnergies;
+use crate::certificate::Told;
 use crate::control::Control;
 use crate::exchange::Exchange;
 use crate::impact::Impact;
@@ -43,6 +44,8 @@ pub struct State {
     pub assemblies: AssemblyEnergies,
     /// Shapes of the elements since their frequencies were last looked at, of an explicit scheme.
     pub shapes: Shapes,
+    /// What passed through each other since the start; none where nobody has looked, as on several ranks.
+    pub crossings: Option<Told>,
 }
 
 /// Links at an accepted instant; empty without links.
@@ -234,7 +237,8 @@ impl State {
             && self.records.are_of(system)
             && self.exchange.is_of(system, self.step)
             && self.assemblies.are_of(system)
-            && self.shapes.are_of(system);
+            && self.shapes.are_of(system)
+            && (self.crossings.as_ref()).is_none_or(|told| told.is_of(system));
         let cause = match (fits, self.time >= 0.0 && self.time.is_finite()) {
             (true, true) => return Ok(()),
             (true, false) => format!("its time is {} s", self.time),
@@ -325,5 +329,6 @@ pub(crate) fn state_without_motion(system: &System) -> State {
         exchange: Exchange::default(),
         assemblies: AssemblyEnergies::default(),
         shapes: Shapes::default(),
+        crossings: None,
     }
 }

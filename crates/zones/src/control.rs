@@ -164,8 +164,9 @@ impl Attempts for Zones {
         Ok(self.try_size(dt, next)?)
     }
 
-    fn passes(&self) -> bool {
-        self.drivers.iter().any(Attempts::passes)
+    /// Points alone: whether surfaces cross is known once the step of all zones is taken.
+    fn passes(&mut self) -> bool {
+        self.drivers.iter_mut().any(Attempts::passes)
     }
 
     fn first_cut(&self, rules: &Adaptive, planned: f64) -> f64 {

@@ -17,10 +17,11 @@ use crate::model::Zoned;
 use crate::places::Places;
 use crate::stage::Stage;
 use crate::zones::{Zones, ZonesState};
+use carom_dynamics::Certificate;
 use carom_dynamics::Costs;
 use carom_dynamics::records::Records;
 use carom_dynamics::state::{State, empty_state};
-use carom_dynamics::{AssemblyEnergies, Balance, Impact, Ledger, Tolerated};
+use carom_dynamics::{AssemblyEnergies, Balance, Impact, Ledger, Told, Tolerated};
 use carom_dynamics::{ContactReport, ContactSample, Notices, StepReport};
 use carom_dynamics::{FailedProblem, Stepper};
 use carom_system::System;
@@ -52,6 +53,8 @@ pub struct Whole {
     placed: Vec<usize>,
     state: State,
     report: StepReport,
+    /// Who looks at whether bodies pass through each other; none before the first step.
+    certificate: Option<Certificate>,
 }
 
 /// What a run in zones goes on from.
@@ -65,6 +68,8 @@ struct Saved {
     assemblies: AssemblyEnergies,
     /// Impacts of all zones in the order in which they were told.
     impacts: Vec<Impact>,
+    /// What passed through each other.
+    crossings: Option<Told>,
 }
 
 impl Whole {
@@ -106,6 +111,10 @@ impl Whole {
         for (state, driver) in saved.zones.zones.iter().zip(&zones.drivers) {
             state.check(driver.system())?;
         }
+        let mut told = saved.crossings.iter();
+        if !told.all(|told| told.is_of(&system)) {
+            return Err(refused("it belongs to another model".to_owned()));
+        }
         let stage = match (&saved.stage, Stage::new(zoned, &system)?) {
             (Some(state), Some(stage)) => Some(stage.resume(state)?),
             (None, _) => None,
@@ -116,6 +125,7 @@ impl Whole {
         whole.state.ledger = saved.ledger;
         whole.state.assemblies = saved.assemblies;
         whole.state.records.impacts = saved.impacts;
+        whole.state.crossings = saved.crossings;
         let drivers = whole.zones.drivers.iter();
         whole.impacts = drivers.map(|d| d.state().records.impacts.len()).collect();
         let between = whole.zones.between();
@@ -124,6 +134,7 @@ impl Whole {
             Some(stage) => whole.gather_stage(Box::new(stage)),
             None => whole.gather(),
         }
+        whole.certificate = Certificate::of(&whole.system, &whole.state);
         Ok(whole)
     }
 
@@ -160,6 +171,7 @@ impl Whole {
                 ..StepReport::default()
             },
             zones,
+            certificate: None,
             stage: (None, Costs::default()),
             system,
         }
@@ -320,6 +332,25 @@ impl Whole {
             .sort_by(|a, b| (a.start + a.duration).total_cmp(&(b.start + b.duration)));
     }
 
+    fn take_step(&mut self) -> Result<(), carom_dynamics::Error> {
+        if let Some(mut stage) = self.stage.0.take() {
+            if stage.is_over() {
+                self.leave_stage(*stage)?;
+            } else {
+                let outcome = stage.driver.step();
+                self.gather_stage(stage);
+                return outcome;
+            }
+        }
+        self.zones.step()?;
+        self.gather();
+        self.report.notices = Notices::default();
+        for driver in &self.zones.drivers {
+            self.report.notices.join(&driver.report().notices);
+        }
+        Ok(())
+    }
+
     fn tell(&mut self) {
         let report = &mut self.report;
         report.step = self.state.step;
@@ -419,22 +450,16 @@ fn common_multiple(steps: &[u32]) -> u32 {
 impl Stepper for Whole {
     /// One outer step, or one of the static stage.
     fn step(&mut self) -> Result<(), carom_dynamics::Error> {
-        if let Some(mut stage) = self.stage.0.take() {
-            if stage.is_over() {
-                self.leave_stage(*stage)?;
-            } else {
-                let outcome = stage.driver.step();
-                self.gather_stage(stage);
-                return outcome;
-            }
+        let (system, before) = (&self.system, self.state.time);
+        if self.certificate.is_none() {
+            self.certificate = Certificate::of(system, &self.state);
         }
-        self.zones.step()?;
-        self.gather();
-        self.report.notices = Notices::default();
-        for driver in &self.zones.drivers {
-            self.report.notices.join(&driver.report().notices);
+        let outcome = self.take_step();
+        if let (Ok(()), Some(certificate)) = (&outcome, &mut self.certificate) {
+            certificate.look_at(&self.system, (self.state.time, &self.state), before);
+            certificate.take_attempt(&mut self.state.crossings);
         }
-        Ok(())
+        outcome
     }
 
     fn system(&self) -> &System {
@@ -456,6 +481,7 @@ impl Stepper for Whole {
             ledger: self.state.ledger.clone(),
             assemblies: self.state.assemblies.clone(),
             impacts: self.state.records.impacts.clone(),
+            crossings: self.state.crossings.clone(),
         };
         postcard::to_stdvec(&saved).map_err(|cause| carom_dynamics::Error::State {
             cause: cause.to_string(),
@@ -484,6 +510,10 @@ impl Stepper for Whole {
         for driver in &mut self.zones.drivers {
             driver.heed(interrupt);
         }
+    }
+
+    fn certificate(&self) -> Option<&Certificate> {
+        self.certificate.as_ref()
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {

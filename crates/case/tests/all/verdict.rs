@@ -182,7 +182,7 @@ time = { end = 0.12, step = 2e-3, scheme.theta.theta = 0.6 }
 [contact.c]
 secondary = "a.bottom"
 primary = "b.top"
-law.velocity = {}
+law.penalty.stiffness = 1.2e6
 sliding = "finite"
 "#,
     );
@@ -206,9 +206,9 @@ time = {{ end = "12 ms", step = "{step}", scheme.theta = {{}} }}
     result(&text).0
 }
 
-/// Bodies that cross within a step of 80 mm never close, and nothing but the crossing tells of it.
+/// A step of 80 mm carries the bodies to the other side: it is cut, and they meet.
 #[test]
-fn bodies_that_pass_each_other_within_a_step_are_bad() {
+fn bodies_that_would_pass_each_other_within_a_step_meet() {
     let beams = r#"
 mesh.generate.a.line = { from = [0.0, 0.0], to = [1.0, 0.0], elements = 8 }
 mesh.generate.b.line = { from = [0.1, 0.1], to = [0.9, 0.1], elements = 5 }
@@ -234,9 +234,8 @@ body.b = { region = "b", material = "m", section.plane-strain.thickness = 1.0, i
             let contacts = summary.contacts.values();
             contacts.filter_map(|contact| contact.impulse).sum()
         };
-        assert_eq!(impulses(&summary), 0.0);
-        // the middles are 0.1 m apart at the start, and 0.02 m where surfaces touch
-        assert_eq!(grade(&summary, "passing"), Grade::Bad);
+        assert!(impulses(&summary) > 0.0, "{contact}");
+        assert!(summary.time.rejected.passage > 0, "{contact}");
         let summary = crossing(bodies, contact, "0.25 ms");
         assert!(impulses(&summary) > 0.0);
         assert_eq!(grade(&summary, "passing"), Grade::Good);

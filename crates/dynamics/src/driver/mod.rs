@@ -60,6 +60,7 @@ use carom_algebra::Interrupt;
 pub use self::contacts::tangents::Rubbing;
 pub use self::ranked::RankShare;
 pub use self::unfit::why_not_on_ranks;
+use crate::certificate::Certificate;
 use crate::costs::Costs;
 use crate::report::StepReport;
 use crate::state::State;
@@ -97,6 +98,10 @@ pub struct Driver {
     /// Size of the next step that an event forces, in tests, s.
     unplanned: Option<f64>,
     watch: Watch,
+    /// Who looks at whether bodies pass through each other; not of zones, whose bodies others have, nor of several ranks.
+    certificate: Option<Certificate>,
+    /// Whether it is of a zone.
+    is_zone: bool,
     report: StepReport,
     /// What the run cost before this driver went on with it.
     earlier: Costs,

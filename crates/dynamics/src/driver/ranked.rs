@@ -107,6 +107,8 @@ impl Driver {
 
     /// Shares the steps with other ranks. `own`: the elements of this one.
     fn share(&mut self, ranks: &Ranks, (watched, own): (&Watched, OwnElements)) {
+        self.certificate = None;
+        self.attempt.state.crossings = None;
         let system = Arc::clone(&self.attempt.system);
         let map = self.attempt.maps.first();
         let at_ends =

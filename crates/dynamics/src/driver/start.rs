@@ -42,7 +42,9 @@ impl Driver {
     /// # Errors
     /// As [`Driver::new`].
     pub fn of_zone(system: Arc<System>) -> Result<Driver, Error> {
-        Driver::begun(system, None)
+        let mut driver = Driver::begun(system, None)?;
+        driver.is_zone = true;
+        Ok(driver)
     }
 
     fn begun(released: Arc<System>, direct: Option<Direct>) -> Result<Driver, Error> {
@@ -61,6 +63,8 @@ impl Driver {
             ahead: system.dt,
             unplanned: None,
             watch: Watch::new(&system),
+            certificate: None,
+            is_zone: false,
             report: StepReport {
                 contacts: vec![ContactReport::default(); system.contacts.len()],
                 ..StepReport::default()
@@ -85,6 +89,7 @@ impl Driver {
         let mut driver = Driver::new(system)?;
         driver.attempt.next.clone_from(&state);
         driver.attempt.state = state;
+        driver.look_from_here();
         Ok(driver)
     }
 
@@ -96,6 +101,7 @@ impl Driver {
     /// As [`Driver::new`].
     pub fn restart(&mut self, displacement: &[f64], velocity: &[f64]) -> Result<(), Error> {
         let system = Arc::clone(&self.attempt.system);
+        self.certificate = None;
         // their room before that of new ones is taken
         self.attempt.state = state_without_motion(&system);
         self.attempt.next = state_without_motion(&system);

@@ -3,9 +3,12 @@
 //! An adaptive step is cut where a contact closes, and halved where energy grows or no solution is found. A step of fixed
 //! size that finds no solution is taken in halves of halves.
 
+use std::sync::Arc;
+
 use carom_algebra::Interrupt;
 
 use super::Driver;
+use crate::certificate::Certificate;
 use crate::control::{Attempts, Control, adapt};
 use crate::costs::Costs;
 use crate::error::Error;
@@ -13,6 +16,10 @@ use crate::march::{FailedProblem, Going, Scope, Stepper};
 use crate::report::{Notices, StepReport};
 use crate::state::State;
 use crate::system::{Adaptive, System};
+
+/// Halvings of a step in which bodies go through each other, where more than of one without a solution: a part is so short then that bodies at any
+/// speed that a mesh resolves come closer by a small part of an element.
+const DEEPEST: u32 = 12;
 
 impl Driver {
     /// Takes one step. With an adaptive step, attempts in which a contact closes, energy grows, or no solution is found are
@@ -26,6 +33,7 @@ impl Driver {
         self.report.attempts = 0;
         self.report.samples.clear();
         self.report.notices = Notices::default();
+        self.look_from_here();
         match self.attempt.system.adaptive.is_some() && !self.attempt.is_static() {
             true => self.adapted_step(),
             false => self.step_in_parts(),
@@ -33,7 +41,7 @@ impl Driver {
     }
 
     fn adapted_step(&mut self) -> Result<(), Error> {
-        let system = std::sync::Arc::clone(&self.attempt.system);
+        let system = Arc::clone(&self.attempt.system);
         let Some(rules) = &system.adaptive else {
             return Ok(());
         };
@@ -71,8 +79,9 @@ impl Driver {
         let mut indefinite = false;
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
-        let most = self.attempt.most_halvings();
-        let parts = 1u64 << most;
+        let mut most = self.attempt.most_halvings();
+        let deepest = most.max(DEEPEST);
+        let parts = 1u64 << deepest;
         let mut forced = self.is_forced();
         while done < parts {
             let part = parts >> level;
@@ -81,12 +90,13 @@ impl Driver {
             let dt = size * (part as f64 / parts as f64);
             match self.attempt(dt, dt) {
                 Ok(()) if std::mem::take(&mut forced) => self.withdraw_stages(),
-                Ok(()) if level < most && self.passes() => {
+                Ok(()) if self.crosses(to) && level < deepest => {
                     let step = taken + 1;
-                    tracing::debug!("step {step}: a point passed what it faces; halved");
+                    tracing::debug!("step {step}: bodies went through each other; halved");
                     self.withdraw_stages();
                     control.passed += 1;
                     level += 1;
+                    most = most.max(level);
                 }
                 Ok(()) => {
                     self.report.notices.join(&self.attempt.notices);
@@ -100,6 +110,7 @@ impl Driver {
                         start.get_or_insert_with(|| {
                             before.map_or_else(|| state.clone(), |state| *state)
                         });
+                        self.take_crossings();
                         self.swap_states();
                         self.attempt.state.time = to;
                         // parts of a step are of the same stage
@@ -125,6 +136,8 @@ impl Driver {
                     if let Some(start) = start {
                         self.attempt.state = start;
                         self.leave_direct();
+                        self.certificate = None;
+                        self.look_from_here();
                     }
                     if error.is_of_any_step() {
                         return Err(error);
@@ -169,9 +182,48 @@ impl Driver {
         self.attempt.next.control = control;
         self.attempt.next.control.compression = self.parts.stored().compression;
         self.parts.set_prepared(false);
+        self.take_crossings();
         self.swap_states();
         self.attempt.show_followed(size);
         self.tell(size);
+    }
+
+    /// The system of the dynamics, in a static stage too.
+    fn whole(&self) -> Arc<System> {
+        Arc::clone(self.released.as_ref().unwrap_or(&self.attempt.system))
+    }
+
+    /// Has the steps from the state on looked at, if they are not, and those before it were.
+    pub(super) fn look_from_here(&mut self) {
+        let is_whole = !self.is_zone && !self.ranks.are_several();
+        if is_whole && self.certificate.is_none() {
+            self.certificate = Certificate::of(&self.whole(), &self.attempt.state);
+        }
+    }
+
+    /// Looks at whether bodies go through each other in the attempt, which ends at `to` (s), in a way that a smaller step may keep them from. Ranks take
+    /// the step all the same: each knows of its own points alone.
+    fn crosses(&mut self, to: f64) -> bool {
+        if self.ranks.are_several() {
+            return false;
+        }
+        let (system, state) = (self.whole(), &self.attempt.state);
+        let from = self
+            .origin
+            .as_ref()
+            .map_or(state.time, |origin| origin.time);
+        let crosses = self.certificate.as_mut().is_some_and(|certificate| {
+            certificate.look_at(&system, (to, &self.attempt.next), from)
+        });
+        let passed = self.contacts.sums().iter().map(|of| of.passed);
+        crosses || passed.sum::<u64>() > 0
+    }
+
+    /// Takes the attempt that was looked at.
+    fn take_crossings(&mut self) {
+        if let Some(certificate) = &mut self.certificate {
+            certificate.take_attempt(&mut self.attempt.next.crossings);
+        }
     }
 
     /// Size of the next step, s: the same bits for equal steps, so that a constant matrix is.
@@ -236,10 +288,14 @@ impl Attempts for Driver {
         ledger.free_energy() > fraction * ledger.largest_energy
     }
 
-    /// Ranks take the step all the same: each knows of its own points alone.
-    fn passes(&self) -> bool {
-        let all = self.contacts.sums().iter();
-        !self.ranks.are_several() && all.map(|of| of.passed).sum::<u64>() > 0
+    fn passes(&mut self) -> bool {
+        let state = &self.attempt.state;
+        let start = self
+            .origin
+            .as_ref()
+            .map_or(state.time, |origin| origin.time);
+        let size = self.attempt.stage.of;
+        self.crosses(state.control.instant(state.step, start, size))
     }
 
     /// An attempt of one stage leaves nothing behind.
@@ -275,6 +331,10 @@ impl Stepper for Driver {
 
     fn costs(&self) -> Costs {
         self.costs()
+    }
+
+    fn certificate(&self) -> Option<&Certificate> {
+        self.certificate.as_ref()
     }
 
     fn failed_problem(&self) -> Option<FailedProblem<'_>> {

@@ -117,8 +117,12 @@ impl Around {
     pub fn new(bounds: &Bounds, origin: &[f64; 3], reach: f64) -> Around {
         let local = |x: &[f64; 3]| [0, 1, 2].map(|i| (x[i] - origin[i]) as f32);
         let (min, max) = (local(&bounds.min), local(&bounds.max));
-        let coordinates = min.iter().chain(&max);
-        let own = coordinates.fold(0.0, |most: f32, x| most.max(x.abs()));
+        let coordinates = || min.iter().chain(&max);
+        // of a place that is none the distances are none either
+        let own = match coordinates().all(|x| x.is_finite()) {
+            true => coordinates().fold(0.0, |most: f32, x| most.max(x.abs())),
+            false => f32::NAN,
+        };
         Around {
             min,
             max,
@@ -126,9 +130,12 @@ impl Around {
         }
     }
 
-    /// Square of a distance (m) from which on boxes are surely farther than it.
+    /// Square of a distance (m) from which on boxes are surely farther than it; below zero from a place with coordinates that are not finite.
     pub fn limit(&self, distance: f64) -> f32 {
         let square = (distance + self.lost).powi(2) * (1.0 + ROUNDING);
+        if self.lost.is_nan() {
+            return -1.0;
+        }
         // boxes that do not exist are at infinity, which no limit reaches
         (square as f32).next_up().min(f32::MAX)
     }
@@ -138,6 +145,26 @@ impl Around {
 mod tests {
     use super::*;
     use crate::random::Random;
+
+    #[test]
+    fn nothing_is_near_a_place_that_is_none() {
+        let wide = Wide::EMPTY;
+        for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for place in [[x, 0.0, 0.0], [x; 3], [0.0, x, 1.0]] {
+                let bounds = Bounds {
+                    min: place,
+                    max: place,
+                };
+                let around = Around::new(&bounds, &[0.0; 3], 1.0);
+                let limit = around.limit(f64::INFINITY);
+                assert!(
+                    wide.squares(&around)
+                        .iter()
+                        .all(|square| !(*square <= limit))
+                );
+            }
+        }
+    }
 
     #[test]
     fn a_box_is_never_told_to_be_farther_than_it_is() {

@@ -157,7 +157,6 @@ fn summary(results: &Results, ending: &Ending, unfinished: Option<String>) -> Su
         system,
         last,
         totals,
-        crossings: &results.crossings,
         zones,
         energy: &energy,
         momentum: &momentum,

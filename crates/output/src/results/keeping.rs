@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant as Clock};
 
-use carom_dynamics::{LONGEST, Stepper, System, Told};
+use carom_dynamics::{LONGEST, Stepper, System};
 use serde::Deserialize;
 
 use super::due::Due;
@@ -23,7 +23,7 @@ struct Gathered(Files, Beside);
 type Files = (u64, histories::Kept, impacts::Kept, Option<fields::Sent>);
 
 /// Figures, kept instants with the largest stresses, instants of largest forces, springs and dashpots with bolts and supports, loads, spectra, filtered accelerations, series and statuses
-/// of the page, errors against the exact solution, what passed through each other, totals, wall time of the run.
+/// of the page, errors against the exact solution, totals, wall time of the run.
 #[derive(Deserialize)]
 struct Beside(
     figures::Traces,
@@ -39,7 +39,7 @@ struct Beside(
     (Vec<f64>, Vec<Vec<f64>>),
     page::series::Series,
     page::raster::RasterOf,
-    (Option<exact::Errors>, Option<Told>),
+    Option<exact::Errors>,
     totals::Totals,
     Duration,
 );
@@ -166,7 +166,7 @@ impl Results {
             filtered,
             series,
             raster,
-            (errors, crossings),
+            errors,
             totals,
             wall,
         ) = beside;
@@ -185,7 +185,6 @@ impl Results {
         if let (Some(comparison), Some(errors)) = (&mut self.comparison, errors) {
             comparison.errors = errors;
         }
-        self.crossings.recall(crossings);
         self.totals = totals;
         self.earlier = wall;
         self.due = Due::from(checkpoint.head.time);
@@ -227,10 +226,7 @@ impl Results {
             self.filtered.kept(),
             &self.series.series,
             &self.raster,
-            (
-                self.comparison.as_ref().map(|c| &c.errors),
-                self.crossings.kept(),
-            ),
+            self.comparison.as_ref().map(|c| &c.errors),
             &self.totals,
             self.earlier + self.begin.elapsed(),
         );

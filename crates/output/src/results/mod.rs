@@ -15,7 +15,6 @@ mod columns;
 mod conclusion;
 mod contacts;
 mod costs;
-mod crossings;
 mod derived;
 mod discrete;
 mod due;
@@ -56,11 +55,10 @@ mod zoning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System, Watched};
+use carom_dynamics::{Certificate, Observer, Scope, State, StepReport, Stepper, System, Watched};
 
 use crate::{Error, Folder, atomic, checkpoint};
 use bolts::BoltForces;
-use crossings::Crossings;
 use discrete::DiscretePeaks;
 use due::Due;
 use exact::Comparison;
@@ -116,7 +114,6 @@ pub struct Results {
     spectra: Spectra,
     filtered: Filtered,
     comparison: Option<Comparison>,
-    crossings: Crossings,
     totals: Totals,
     /// Mean velocity of the bodies at the start, m/s.
     start: Vec<[f64; 3]>,
@@ -221,7 +218,6 @@ impl Results {
             spectra,
             filtered,
             comparison: settings.reference.clone().map(Comparison::new),
-            crossings: Crossings::default(),
             totals: Totals::default(),
             start: velocities(&system, &system.initial.velocity),
             last: Last::default(),
@@ -248,7 +244,6 @@ impl Results {
         let finite = (report.balance.energy_residual + forces).is_finite();
         self.totals.not_finite += u64::from(!finite);
         self.totals.notice(report);
-        self.crossings.push(&self.system, state, report);
         let point = self.point.as_ref();
         self.loads.push(&self.system, state, report);
         let beside = (point, &self.loads.now[..]);
@@ -318,6 +313,7 @@ impl Results {
                 state.exchange.largest_momentum,
             ]),
             velocities: velocities(&self.system, &state.motion.v),
+            crossings: run.certificate().map(Certificate::findings),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
             crushes: (0..self.system.contacts.len()).map(crush).collect(),
         };
@@ -399,16 +395,6 @@ impl Observer for Results {
             true => Scope::All,
             false if self.raster.wants(report) => Scope::Points,
             false => Scope::Watched,
-        }
-    }
-
-    fn resumed(&mut self, run: &dyn Stepper) -> Result<(), carom_dynamics::Error> {
-        match self.crossings.go_on(&self.system, run.state()) {
-            true => Ok(()),
-            false => {
-                let error = checkpoint::of_another_run(self.folder.path());
-                Err(Error::of_observer(error))
-            }
         }
     }
 

@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use carom_dynamics::{AssemblyEnergies, AssemblyEnergy, Control, Ledger, Records, StepReport};
+use carom_dynamics::{
+    AssemblyEnergies, AssemblyEnergy, Control, Findings, Ledger, Records, StepReport,
+};
 use carom_pages::plot::quantity;
 use serde::{Deserialize, Serialize};
 
@@ -84,6 +86,8 @@ pub(crate) struct Last {
     pub(crate) exchange: Option<[f64; 2]>,
     /// Mean velocity of the bodies, m/s.
     pub(crate) velocities: Vec<[f64; 3]>,
+    /// What passed through each other, where somebody has looked.
+    pub(crate) crossings: Option<Findings>,
     /// Whether each contact has a force.
     pub(crate) closed: Vec<bool>,
     /// Largest crush of a point of each contact that stays, m.

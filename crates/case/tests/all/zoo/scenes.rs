@@ -30,14 +30,13 @@ pub const MEETINGS: [Maker; 12] = [
 ];
 
 /// Bodies that are on the other side after a step, where contact may see them or not.
-pub const JUMPS: [Maker; 1] = [disc_in_one_step];
+pub const JUMPS: [Maker; 2] = [disc_in_one_step, plates_in_one_step];
 
 /// Bodies that go through each other whatever contact does.
-pub const CROSSINGS: [Maker; 4] = [
+pub const CROSSINGS: [Maker; 3] = [
     cubes_without_contact,
     squares_without_contact,
     rods_without_contact,
-    plates_in_one_step,
 ];
 
 /// Bodies that stay apart.
@@ -292,15 +291,18 @@ fn rods_without_contact(random: &mut Random, pose: Pose) -> Scene {
     scene.without_contact().fated(Fate::Crosses)
 }
 
-/// Half a step before its end the upper plate is deeper than the least thickness, 0.02 m, which is as deep as general contact looks.
+/// A step takes the upper plate seven thicknesses further. The modulus is one of plates that bear the blow, but for explicit steps, which waves bound.
 fn plates_in_one_step(random: &mut Random, pose: Pose) -> Scene {
     let tilted = flat_plate().turned(X, random.between(-0.1, 0.1));
     let upper = aside(spun(tilted, random), random, 0.03);
     let upper = above(upper, random.between(0.01, 0.03));
     let parts = [below(flat_plate()), upper];
     let scene = Scene::falling("plates in one step", (parts, pose), (fast(random), 6.0));
-    let scene = scene.timed(3e4, [5e-4, 1e-3]);
-    scene.fated(Fate::Crosses)
+    let young = match pose {
+        Pose::Explicit => 3e4,
+        Pose::Rigid | Pose::Deformable => 3e9,
+    };
+    scene.timed(young, [5e-4, 1e-3])
 }
 
 /// Two bodies of which the second one flies over the first at a height (m) of its own, along x at a speed (m/s).

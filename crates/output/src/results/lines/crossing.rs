@@ -1,7 +1,7 @@
 //! Contacts whose sides have changed sides without a force, within a step or between the points that carry forces.
 
 use carom_contact::law::Level;
-use carom_dynamics::{Certificate, Crossing};
+use carom_dynamics::{Crossing, Findings};
 use carom_pages::form::Form;
 use carom_pages::plot::quantity;
 
@@ -73,24 +73,24 @@ const DEEP: &str =
 /// Pairs of bodies, or of a body and the rigid shape that it meets, whose surfaces passed through each other although a contact is between them: no
 /// force told of it.
 pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
-    let Some(certificate) = evidence.crossings.certificate() else {
+    let Some(findings) = &evidence.last.crossings else {
         return Finding::Unchecked(
             "whether surfaces pass through each other: nobody has seen whole states, as on several ranks"
                 .to_owned(),
         );
     };
-    if !certificate.looks(evidence.system) {
+    if !findings.looks(evidence.system) {
         return Finding::Absent;
     }
-    let crossings = &evidence.crossings;
-    let crossed = crossings.those(|crossing| crossing.contact.is_some() && !crossing.held);
+    let crossed = findings
+        .told
+        .those(|crossing| crossing.contact.is_some() && !crossing.held);
     let of = match crossed.first() {
         None => format!(
             "{} pairs of nodes, edges and faces tested, {} steps cut",
-            certificate.told().tested,
-            evidence.last.control.passed
+            findings.told.tested, evidence.last.control.passed
         ),
-        Some(first) => format!("the first {}", when_and_where(evidence, certificate, first)),
+        Some(first) => format!("the first {}", when_and_where(evidence, findings, first)),
     };
     Finding::Line(Line::new(
         "surfaces",
@@ -108,10 +108,10 @@ pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
 
 /// The same where the contact had a force, but not where it would have kept them apart. From there on nobody looks at the pair.
 pub(super) fn under_force(evidence: &Evidence) -> Finding {
-    let Some(certificate) = evidence.crossings.certificate() else {
+    let Some(findings) = &evidence.last.crossings else {
         return Finding::Absent;
     };
-    let deep = evidence.crossings.those(|crossing| crossing.held);
+    let deep = findings.told.those(|crossing| crossing.held);
     let Some(first) = deep.first() else {
         return Finding::Absent;
     };
@@ -121,7 +121,7 @@ pub(super) fn under_force(evidence: &Evidence) -> Finding {
             .map(|contact| &evidence.system.contacts[contact]);
         contact.map(|contact| contact.law.get().level())
     };
-    let first = when_and_where(evidence, certificate, first);
+    let first = when_and_where(evidence, findings, first);
     if deep
         .iter()
         .all(|crossing| law(crossing) == Some(Level::GapAndRate))
@@ -146,12 +146,12 @@ pub(super) fn under_force(evidence: &Evidence) -> Finding {
 
 /// Pairs of bodies that nobody looks at.
 pub(super) fn left_open(evidence: &Evidence) -> Finding {
-    let Some(certificate) = evidence.crossings.certificate() else {
+    let Some(findings) = &evidence.last.crossings else {
         return Finding::Absent;
     };
-    let named = |of: &[u32; 2]| certificate.names(evidence.system, *of);
-    let overlapping = certificate.overlapping().iter();
-    let joined = certificate.joined(evidence.system);
+    let named = |of: &[u32; 2]| findings.names(evidence.system, *of);
+    let overlapping = findings.overlapping().iter();
+    let joined = findings.joined(evidence.system);
     let mut pairs: Vec<String> = overlapping
         .map(|of| format!("{}, which meet at the start", named(of)))
         .chain(joined.map(|of| {
@@ -179,10 +179,10 @@ pub(super) fn left_open(evidence: &Evidence) -> Finding {
 /// Who met, when and where.
 pub(super) fn when_and_where(
     evidence: &Evidence,
-    certificate: &Certificate,
+    findings: &Findings,
     crossing: &Crossing,
 ) -> String {
-    let names = certificate.names(evidence.system, crossing.of);
+    let names = findings.names(evidence.system, crossing.of);
     let place = &crossing.place[..evidence.system.dim];
     let place: Vec<String> = place.iter().map(|x| quantity(*x, "m")).collect();
     format!(

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use carom_dynamics::System;
 
-use crate::results::crossings::Crossings;
 use crate::results::totals::{Last, Totals};
 use crate::summary::{Energy, Exact, Momentum, Pretension, Zones};
 use crate::verdict::Line;
@@ -14,7 +13,6 @@ pub(crate) struct Evidence<'a> {
     pub(crate) system: &'a System,
     pub(crate) last: &'a Last,
     pub(crate) totals: &'a Totals,
-    pub(crate) crossings: &'a Crossings,
     pub(crate) zones: Option<&'a Zones>,
     pub(crate) energy: &'a Energy,
     pub(crate) momentum: &'a Momentum,

@@ -41,21 +41,19 @@ pub(super) fn closed(evidence: &Evidence) -> Finding {
 
 /// Bodies that met without a contact between them: what they did to each other is not in the result.
 pub(super) fn met(evidence: &Evidence) -> Finding {
-    let Some(certificate) = evidence.crossings.certificate() else {
+    let Some(findings) = &evidence.last.crossings else {
         return Finding::Absent;
     };
     let system = evidence.system;
-    if !certificate.looks(system) {
+    if !findings.looks(system) {
         return Finding::Absent;
     }
-    let met = evidence
-        .crossings
-        .those(|crossing| crossing.contact.is_none());
+    let met = findings.told.those(|crossing| crossing.contact.is_none());
     let quantity = match met.first() {
         None => "pairs of bodies that met with nothing between them".to_owned(),
         Some(first) => format!(
             "pairs of bodies that met with no contact between them, the first {}",
-            when_and_where(evidence, certificate, first)
+            when_and_where(evidence, findings, first)
         ),
     };
     Finding::Line(Line::new(
