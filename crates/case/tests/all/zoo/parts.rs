@@ -14,6 +14,8 @@ pub enum Cells {
     Triangles,
     /// Quadrilaterals of four nodes, in the plane.
     Squares,
+    /// Quadrilaterals of four nodes in space, for shells.
+    Shells,
     /// Tetrahedra of four nodes.
     Tetrahedra,
     /// Hexahedra of eight nodes.
@@ -26,7 +28,7 @@ impl Cells {
         match self {
             Cells::Lines => 1,
             Cells::Triangles => 2,
-            Cells::Squares => 3,
+            Cells::Squares | Cells::Shells => 3,
             Cells::Tetrahedra => 4,
             Cells::Bricks => 5,
         }
@@ -36,22 +38,28 @@ impl Cells {
     fn dim(self) -> usize {
         match self {
             Cells::Lines => 1,
-            Cells::Triangles | Cells::Squares => 2,
+            Cells::Triangles | Cells::Squares | Cells::Shells => 2,
             Cells::Tetrahedra | Cells::Bricks => 3,
         }
     }
 
     /// Whether bodies of such cells lie in the plane.
     pub fn are_plane(self) -> bool {
-        self.dim() == 2
+        matches!(self, Cells::Triangles | Cells::Squares)
     }
 
-    /// The sides of a cell, each by the places of its corners in the cell; a line is its own side.
+    /// Whether its cells are a line or a surface with a section around it.
+    pub fn have_section(self) -> bool {
+        matches!(self, Cells::Lines | Cells::Shells)
+    }
+
+    /// The sides of a cell, each by the places of its corners in the cell; a line and a cell of a shell are their own sides.
     fn sides(self) -> &'static [&'static [usize]] {
         match self {
             Cells::Lines => &[&[0, 1]],
             Cells::Triangles => &[&[0, 1], &[1, 2], &[2, 0]],
             Cells::Squares => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+            Cells::Shells => &[&[0, 1, 2, 3]],
             Cells::Tetrahedra => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]],
             Cells::Bricks => &[
                 &[0, 3, 2, 1],
@@ -74,7 +82,7 @@ pub struct Part {
     pub nodes: Vec<Vec3>,
     /// Nodes of each cell.
     pub corners: Vec<Vec<usize>>,
-    /// Radius of the section of a beam, m; zero of all others.
+    /// Radius of the section of a beam, half of the thickness of a shell, m; zero of all others.
     pub radius: f64,
 }
 
@@ -244,7 +252,7 @@ pub fn gmsh(parts: &[(&str, &Part)]) -> String {
         let first = nodes.len() + 1;
         nodes.extend(part.nodes.iter().copied());
         let skin = match part.cells {
-            Cells::Lines => None,
+            Cells::Lines | Cells::Shells => None,
             Cells::Triangles | Cells::Squares => Some((1, Cells::Lines.of_gmsh())),
             Cells::Tetrahedra => Some((2, Cells::Triangles.of_gmsh())),
             Cells::Bricks => Some((2, Cells::Squares.of_gmsh())),

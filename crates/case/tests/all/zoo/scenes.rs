@@ -1,5 +1,7 @@
 //! The scenes that there are, in positions and at speeds from a seed.
 //!
+//! Those of [`hollows`], [`crowds`] and [`sections`] are in files of their own.
+//!
 //! Sides that meet are coarse, and meet away from their nodes: edges across edges, tips and corners before the middles of faces, thin parts that are
 //! somewhere else after one step. Up is z in space and y in the plane; the lower body is at rest with its top at zero.
 
@@ -9,17 +11,18 @@ use carom_testing::Random;
 
 use super::parts::{Part, Vec3};
 use super::scene::{Fate, Pose, Scene};
+use super::{crowds, hollows, sections};
 
 /// Makes a scene of numbers from a seed.
 pub type Maker = fn(&mut Random, Pose) -> Scene;
 
 /// Bodies that meet.
-pub const MEETINGS: [Maker; 12] = [
+pub const MEETINGS: &[Maker] = &[
     cube_on_corner,
     corner_on_edge,
     bars_edge_on_edge,
     needle_across_edge,
-    crossed_plates,
+    hollows::ball_in_pyramid,
     tetrahedron_into_face,
     rod_across_ridge,
     rods_crossing,
@@ -27,6 +30,49 @@ pub const MEETINGS: [Maker; 12] = [
     corner_into_corner,
     disc_between_nodes,
     face_on_face,
+    hollows::ball_in_cone,
+    hollows::nut_onto_bolt,
+    sections::beams_across_ridge,
+    sections::beam_end_on_face,
+    sections::beam_on_shell_edge,
+    sections::cord_over_edge,
+];
+
+/// The same, which explicit steps do not take.
+pub const IMPLICIT: &[Maker] = &[
+    hollows::rigid_ball_in_cone,
+    hollows::tool_on_block,
+    hollows::chisel_on_block,
+];
+
+/// Bodies that meet, and with which something goes wrong with seeds beyond the first two.
+pub const FEW: &[Maker] = &[crossed_plates];
+
+/// Bodies that meet, and with which something goes wrong with some seeds at some steps.
+pub const OPEN: &[Maker] = &[
+    needle_rudely,
+    plates_rudely,
+    hollows::wedge_in_notch,
+    hollows::nut_around_bolt,
+    hollows::tool_on_plate,
+    hollows::chisel_on_plate,
+    hollows::tip_on_needle,
+    hollows::thin_plates,
+    hollows::thin_plates_on_edge,
+    crowds::loose_blocks,
+    crowds::chain_links,
+    crowds::folded_strip,
+    crowds::zigzag_strip,
+    crowds::crushed_tube,
+    sections::shells_edge_on_edge,
+    sections::shell_edge_on_shell,
+    sections::shell_corner_on_shell,
+    sections::shell_edge_on_ridge,
+    sections::shell_edge_on_face,
+    sections::solid_corner_on_shell,
+    corner_rudely,
+    bars_rudely,
+    disc_rudely,
 ];
 
 /// Bodies that are on the other side after a step, where contact may see them or not.
@@ -50,24 +96,25 @@ pub const MISSES: [Maker; 7] = [
     cubes_that_part,
 ];
 
-const X: Vec3 = [1.0, 0.0, 0.0];
-const Z: Vec3 = [0.0, 0.0, 1.0];
+pub(super) const X: Vec3 = [1.0, 0.0, 0.0];
+pub(super) const Y: Vec3 = [0.0, 1.0, 0.0];
+pub(super) const Z: Vec3 = [0.0, 0.0, 1.0];
 
 /// With its top at zero.
-fn below(part: Part) -> Part {
+pub(super) fn below(part: Part) -> Part {
     let up = part.up();
     let [low, high] = part.extent(up);
     part.starting(up, low - high)
 }
 
 /// With its bottom `gap` (m) above zero.
-fn above(part: Part, gap: f64) -> Part {
+pub(super) fn above(part: Part, gap: f64) -> Part {
     let up = part.up();
     part.starting(up, gap)
 }
 
 /// Moved across by up to `most` (m).
-fn aside(part: Part, random: &mut Random, most: f64) -> Part {
+pub(super) fn aside(part: Part, random: &mut Random, most: f64) -> Part {
     let mut by = [0.0; 3];
     for x in by.iter_mut().take(part.up()) {
         *x = random.between(-most, most);
@@ -76,12 +123,12 @@ fn aside(part: Part, random: &mut Random, most: f64) -> Part {
 }
 
 /// Turned about what is up.
-fn spun(part: Part, random: &mut Random) -> Part {
+pub(super) fn spun(part: Part, random: &mut Random) -> Part {
     part.turned(Z, random.between(-PI, PI))
 }
 
 /// Turned in any way.
-fn tumbled(part: Part, random: &mut Random) -> Part {
+pub(super) fn tumbled(part: Part, random: &mut Random) -> Part {
     match part.cells.are_plane() {
         true => spun(part, random),
         false => {
@@ -92,26 +139,26 @@ fn tumbled(part: Part, random: &mut Random) -> Part {
 }
 
 /// A cube on its corner, any way around and a little askew.
-fn on_corner(size: f64, random: &mut Random) -> Part {
+pub(super) fn on_corner(size: f64, random: &mut Random) -> Part {
     let cube = Part::bricks([size; 3], [1; 3]);
     let upright = cube.turned([1.0, -1.0, 0.0], (1.0 / 3.0_f64.sqrt()).acos());
     spun(upright, random).turned(X, random.between(-0.2, 0.2))
 }
 
 /// A bar along x with an edge above and one below, sheared along itself.
-fn ridge(random: &mut Random) -> Part {
+pub(super) fn ridge(random: &mut Random) -> Part {
     let shear = random.between(-0.3, 0.3);
     let bar = Part::bricks([0.4, 0.05, 0.05], [3, 1, 1]).turned(X, FRAC_PI_4);
     bar.mapped(|x| [x[0] + shear * x[2], x[1], x[2]])
 }
 
 /// Across what lies along x, at an angle of 30° at least.
-fn across(part: Part, random: &mut Random) -> Part {
+pub(super) fn across(part: Part, random: &mut Random) -> Part {
     part.turned(Z, random.between(PI / 6.0, PI * 5.0 / 6.0))
 }
 
 /// A rod across what lies along x: explicit steps take it along y.
-fn rod_across(length: f64, random: &mut Random, pose: Pose) -> Part {
+pub(super) fn rod_across(length: f64, random: &mut Random, pose: Pose) -> Part {
     let angle = random.between(PI / 6.0, PI * 5.0 / 6.0);
     let rod = Part::rod(length, 3, 0.01);
     match pose {
@@ -121,7 +168,7 @@ fn rod_across(length: f64, random: &mut Random, pose: Pose) -> Part {
 }
 
 /// A rod along x.
-fn rod_along(length: f64, random: &mut Random) -> Part {
+pub(super) fn rod_along(length: f64, random: &mut Random) -> Part {
     Part::rod(length, 3, random.between(0.008, 0.012))
 }
 
@@ -133,7 +180,7 @@ fn large_and_small(random: &mut Random, part: fn(f64) -> Part) -> [Part; 2] {
     [0.1, 0.06].map(|size| tumbled(part(size), random))
 }
 
-fn cube(size: f64) -> Part {
+pub(super) fn cube(size: f64) -> Part {
     Part::bricks([size; 3], [1; 3])
 }
 
@@ -142,7 +189,7 @@ fn square(size: f64) -> Part {
 }
 
 /// Speed (m/s) and way (m) of a fall through what is below.
-fn fall(random: &mut Random) -> (f64, f64) {
+pub(super) fn fall(random: &mut Random) -> (f64, f64) {
     (random.between(4.0, 8.0), 0.06)
 }
 
@@ -173,14 +220,23 @@ fn corner_on_edge(random: &mut Random, pose: Pose) -> Scene {
     let [shift, beside] = [random.between(-0.03, 0.03), random.between(0.002, 0.01)];
     let cube = above(on_corner(0.06, random), 0.003).shifted([shift, beside, 0.0]);
     let parts = [below(ridge(random)), cube];
-    Scene::falling("corner on an edge", (parts, pose), fall(random))
+    Scene::falling("corner on an edge", (parts, pose), fall(random)).gently(true)
+}
+
+fn corner_rudely(random: &mut Random, pose: Pose) -> Scene {
+    corner_on_edge(random, pose).gently(false)
 }
 
 fn bars_edge_on_edge(random: &mut Random, pose: Pose) -> Scene {
     let upper = across(ridge(random), random);
     let upper = above(aside(upper, random, 0.02), 0.003);
     let parts = [below(ridge(random)), upper];
-    Scene::falling("bars edge on edge", (parts, pose), fall(random)).both_rigid()
+    let scene = Scene::falling("bars edge on edge", (parts, pose), fall(random));
+    scene.both_rigid().gently(true)
+}
+
+fn bars_rudely(random: &mut Random, pose: Pose) -> Scene {
+    bars_edge_on_edge(random, pose).gently(false)
 }
 
 fn needle_across_edge(random: &mut Random, pose: Pose) -> Scene {
@@ -191,7 +247,11 @@ fn needle_across_edge(random: &mut Random, pose: Pose) -> Scene {
     let needle = above(aside(needle, random, 0.02), 0.003);
     let parts = [below(ridge(random)), needle];
     let scene = Scene::falling("needle across an edge", (parts, pose), fall(random));
-    scene.timed(3e5, [2e-4, 4e-4])
+    scene.timed(3e5, [2e-4, 4e-4]).gently(true)
+}
+
+fn needle_rudely(random: &mut Random, pose: Pose) -> Scene {
+    needle_across_edge(random, pose).gently(false)
 }
 
 fn crossed_plates(random: &mut Random, pose: Pose) -> Scene {
@@ -200,7 +260,11 @@ fn crossed_plates(random: &mut Random, pose: Pose) -> Scene {
     let upper = above(aside(across(tilted, random), random, 0.02), 0.003);
     let parts = [below(plate()), upper];
     let scene = Scene::falling("crossed plates", (parts, pose), fall(random));
-    scene.timed(3e5, [2e-4, 4e-4]).both_rigid()
+    scene.timed(3e5, [2e-4, 4e-4]).both_rigid().gently(true)
+}
+
+fn plates_rudely(random: &mut Random, pose: Pose) -> Scene {
+    crossed_plates(random, pose).gently(false)
 }
 
 fn tetrahedron_into_face(random: &mut Random, pose: Pose) -> Scene {
@@ -245,7 +309,12 @@ fn disc_between_nodes(random: &mut Random, pose: Pose) -> Scene {
     let radius = random.between(0.012, 0.02);
     let part = Part::squares([0.4, 0.1], [4, 2]).shifted([random.between(0.03, 0.07), 0.0, 0.0]);
     let part = above(part, radius + 0.003);
-    Scene::onto_disc("disc between nodes", radius, (part, pose), fall(random))
+    let scene = Scene::onto_disc("disc between nodes", radius, (part, pose), fall(random));
+    scene.gently(true)
+}
+
+fn disc_rudely(random: &mut Random, pose: Pose) -> Scene {
+    disc_between_nodes(random, pose).gently(false)
 }
 
 /// The disc is 0.04 m thick.
