@@ -9,6 +9,7 @@ mod sides;
 use std::collections::BTreeSet;
 
 use carom_contact::certificate::{Room, look, overlap};
+use carom_contact::law::Level;
 use carom_mesh::{Bounds, Face};
 use serde::{Deserialize, Serialize};
 
@@ -19,9 +20,6 @@ pub use sides::Side;
 use sides::Sides;
 
 type Vec3 = [f64; 3];
-
-/// Sizes of an element from a crossing within which a force has to do with it.
-const BESIDE: f64 = 2.0;
 
 /// Pairs up to which all are followed; of more those that are near.
 const FOLLOWED: usize = 2000;
@@ -265,7 +263,7 @@ impl Certificate {
     }
 
     /// Looks at the end of an attempt at a step, the state at `time` (s) after the one at `before` (s), the last one that was taken. Whether two that a
-    /// contact is between go through each other where that has no force: they may not in a smaller step. What goes deep under a force is for its law.
+    /// contact is between go through each other: they may not in a smaller step. How deep they go under the force of a law that yields is for that.
     pub fn look_at(&mut self, system: &System, (time, end): (f64, &State), before: f64) -> bool {
         self.drop_attempt();
         self.kept.follow(&self.told);
@@ -327,13 +325,13 @@ impl Certificate {
             return true;
         };
         let contact = self.contact_of(system, pair.of);
-        let force = contact
-            .map(|contact| self.force_from(system, (time, end), (contact, pair.of, &met.place)));
-        let near = pair
-            .of
-            .map(|number| self.movers[number as usize].of.core.size());
-        self.is_cut |= force.is_some_and(|force| force > BESIDE * near[0].max(near[1]));
-        let held = force.is_some_and(f64::is_finite);
+        let held =
+            contact.is_some_and(|contact| self.is_held(system, (time, end), (contact, pair.of)));
+        let yields = |contact: usize| {
+            let level = system.contacts[contact].law.get().level();
+            level == Level::GapAndRate
+        };
+        self.is_cut |= contact.is_some_and(|contact| !(held && yields(contact)));
         self.told.crossings.push(Crossing {
             of: pair.of,
             contact,
@@ -364,32 +362,28 @@ impl Certificate {
         }
     }
 
-    /// How far from a place that point of one of two is that is near the other and has a force of their contact, m; infinite where none is.
-    fn force_from(
+    /// Whether a point of one of two that is near the other has a force of their contact.
+    fn is_held(
         &self,
         system: &System,
         (time, end): (f64, &State),
-        (contact, of, place): (usize, [u32; 2], &[f64; 3]),
-    ) -> f64 {
+        (contact, of): (usize, [u32; 2]),
+    ) -> bool {
         let motion = &end.motion;
         let places = system.places(time, &motion.u, &motion.frames);
         let points = system.points_of(contact);
-        let carrying = points.filter(|point| end.interface.force[*point] > 0.0);
-        let distances = carrying.filter_map(|point| {
+        let mut carrying = points.filter(|point| end.interface.force[*point] > 0.0);
+        carrying.any(|point| {
             let (_, own) = system.point(point);
             let point = &system.contacts[contact].points[own];
-            let at = point.place(&places);
-            let x = Bounds::of(&[at]);
-            let holds = [[0, 1], [1, 0]].into_iter().any(|pair| {
+            let x = Bounds::of(&[point.place(&places)]);
+            [[0, 1], [1, 0]].into_iter().any(|pair| {
                 let [one, other] = pair.map(|k| &self.movers[of[k] as usize]);
                 let has = one.of.core.nodes().binary_search(&point.node()).is_ok();
                 let reach = 1.1 * other.of.core.most_kept();
                 has && Bounds::of(&other.nodes).widened(reach).overlaps(&x)
-            });
-            let square: f64 = (0..3).map(|i| (at[i] - place[i]).powi(2)).sum();
-            holds.then_some(square.sqrt())
-        });
-        distances.fold(f64::INFINITY, f64::min)
+            })
+        })
     }
 
     fn overlaps_at_start(&mut self, dim: usize, of: [u32; 2]) -> bool {

@@ -152,7 +152,7 @@ impl Core {
     }
 
     /// Mean diagonal of the box around a patch, m.
-    pub fn size(&self) -> f64 {
+    pub(super) fn size(&self) -> f64 {
         self.size
     }
 

@@ -80,7 +80,10 @@ impl Driver {
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
         let mut most = self.attempt.most_halvings();
-        let deepest = most.max(DEEPEST);
+        let deepest = match self.attempt.system.nonlinear.iteration.halvings {
+            0 => 0,
+            _ => most.max(DEEPEST),
+        };
         let parts = 1u64 << deepest;
         let mut forced = self.is_forced();
         while done < parts {

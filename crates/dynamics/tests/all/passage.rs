@@ -59,7 +59,9 @@ fn falling(wide: f64, thick: f64, (fall, dt): (f64, f64), scheme: Scheme) -> Mod
     }
 }
 
-fn run(model: Model, steps: usize) -> Driver {
+/// Takes steps whole.
+fn run(mut model: Model, steps: usize) -> Driver {
+    model.nonlinear.iteration.halvings = 0;
     let mut driver = Driver::new(System::new(model).unwrap()).unwrap();
     for _ in 0..steps {
         driver.step().unwrap();

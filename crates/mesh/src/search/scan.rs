@@ -36,7 +36,7 @@ impl<'a> Scan<'a> {
         let limits = distances.map(|distance| from.limit(distance));
         Scan {
             from,
-            farthest: limits.into_iter().fold(0.0, larger),
+            farthest: limits.into_iter().fold(f32::NEG_INFINITY, larger),
             points: local,
             limits,
             looks: 0,

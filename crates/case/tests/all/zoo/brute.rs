@@ -205,7 +205,9 @@ fn middle(cell: &[usize], nodes: &[Vec3]) -> Vec3 {
 
 /// What the states show of bodies; of each state the places of the nodes of all of them, m. Each body is held against each other one, and one
 /// that folds against itself.
-pub fn look(skins: &[Skin], states: &[Vec<Vec<Vec3>>]) -> Seen {
+///
+/// Of steps in parts (`in_parts`, by state) the ends are looked at alone.
+pub fn look(skins: &[Skin], states: &[Vec<Vec<Vec3>>], in_parts: &[bool]) -> Seen {
     let boxes: Vec<Vec<Piece>> = states
         .windows(2)
         .map(|step| swept(&step[0], &step[1]))
@@ -221,7 +223,8 @@ pub fn look(skins: &[Skin], states: &[Vec<Vec<Vec3>>]) -> Seen {
                 break;
             }
             if one.apart(other) <= reach {
-                let ends = [0, 1].map(|end| pair.map(|k| &step[end][k][..]));
+                let begin = usize::from(in_parts[number + 1]);
+                let ends = [begin, 1].map(|end| pair.map(|k| &step[end][k][..]));
                 seen = seen.and(look_at(skins, pair[0] == pair[1], ends), (number + 1, pair));
             }
         }

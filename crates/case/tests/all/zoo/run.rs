@@ -4,7 +4,7 @@ use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 
 use carom_case::{Failed, Input, build, parse, run};
-use carom_dynamics::{Balance, Error, Observer, Stepper};
+use carom_dynamics::{Error, Observer, StepReport, Stepper};
 use carom_output::Summary;
 
 use super::parts::{self, Vec3};
@@ -28,12 +28,16 @@ pub struct Energies {
     pub total: f64,
     /// Work of the contacts so far.
     pub contact: f64,
+    /// Whether the step was taken in parts, or cut: nobody knows the way between its ends then.
+    pub in_parts: bool,
 }
 
 impl Energies {
-    fn of(time: f64, balance: &Balance) -> Energies {
+    fn of(time: f64, report: &StepReport) -> Energies {
+        let balance = &report.balance;
         Energies {
             time,
+            in_parts: report.attempts > 1,
             kinetic: balance.kinetic,
             total: balance.kinetic + balance.strain + balance.scheme_energy,
             contact: balance.work_contact,
@@ -54,8 +58,7 @@ impl Observer for States<'_> {
         let mut nodes: Vec<_> = bodies.map(|body| next(body.part.nodes.len())).collect();
         nodes.extend(self.scene.disc.map(|disc| vec![disc.centre]));
         self.all.push(nodes);
-        self.energies
-            .push(Energies::of(state.time, &run.report().balance));
+        self.energies.push(Energies::of(state.time, run.report()));
         Ok(())
     }
 

@@ -56,7 +56,8 @@ impl Tally {
             Err(why) => return vec![why.clone()],
         };
         let skins = skins(scene);
-        let seen = brute::look(&skins, &outcome.states);
+        let in_parts: Vec<bool> = outcome.energies.iter().map(|now| now.in_parts).collect();
+        let seen = brute::look(&skins, &outcome.states, &in_parts);
         self.crossed += usize::from(matches!(seen, Seen::Crossed(..)));
         self.clear += usize::from(seen == Seen::Clear);
         let mut wrong: Vec<String> = told(scene.fate, seen, outcome).collect();
