@@ -8,7 +8,7 @@ mod sides;
 
 use std::collections::BTreeSet;
 
-use carom_contact::certificate::{Room, look, overlap};
+use carom_contact::certificate::{Look, Room, look, overlap};
 use carom_contact::law::Level;
 use carom_mesh::{Bounds, Face};
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,8 @@ pub struct Certificate {
     /// Farthest that the boxes of a followed pair are apart, m; infinite where all are followed.
     near: f64,
     room: Room,
+    /// Room for the vertices of a pair at the start and the end of a step, m.
+    shrunk: [[Vec<[f64; 3]>; 2]; 2],
 }
 
 /// What a certificate has found in a run, and of whom.
@@ -198,6 +200,7 @@ impl Certificate {
             is_trying: false,
             is_cut: false,
             room: Room::default(),
+            shrunk: Default::default(),
             movers,
         }
     }
@@ -237,8 +240,7 @@ impl Certificate {
             if bodies.contains(&None) || certificate.overlaps_at_start(system.dim, of) {
                 continue;
             }
-            let moved = of.map(|number| certificate.movers[number as usize].moved());
-            let found = look(moved, system.dim, &mut certificate.room);
+            let found = certificate.seen(system.dim, of);
             let when = found.met.map(|met| met.part * span);
             let when = when.filter(|_| certificate.contact_of(system, of).is_none());
             met.extend(when.map(|when| (certificate.sides.names(system, of), when)));
@@ -317,8 +319,7 @@ impl Certificate {
         for number in pair.of {
             self.movers[number as usize].place();
         }
-        let moved = pair.of.map(|number| self.movers[number as usize].moved());
-        let found = look(moved, system.dim, &mut self.room);
+        let found = self.seen(system.dim, pair.of);
         self.told.tested += found.tested;
         pair.left = found.apart;
         let Some(met) = found.met else {
@@ -390,11 +391,24 @@ impl Certificate {
         for number in of {
             self.movers[number as usize].place();
         }
-        let cores = of.map(|number| {
-            let mover = &self.movers[number as usize];
-            (&mover.of.core, &mover.before[..])
-        });
-        overlap(cores, dim, &mut self.room)
+        let [one, other] = of.map(|number| &self.movers[number as usize]);
+        let [first, second] = &mut self.shrunk;
+        let moved = [
+            one.against(&other.of.core, first),
+            other.against(&one.of.core, second),
+        ];
+        overlap(moved, dim, &mut self.room)
+    }
+
+    /// What a look at two that are placed finds.
+    fn seen(&mut self, dim: usize, of: [u32; 2]) -> Look {
+        let [one, other] = of.map(|number| &self.movers[number as usize]);
+        let [first, second] = &mut self.shrunk;
+        let moved = [
+            one.against(&other.of.core, first),
+            other.against(&one.of.core, second),
+        ];
+        look(moved, dim, &mut self.room)
     }
 
     /// Chooses the pairs that are followed, by where they were at the start of the step. `motion`: the most that any two have moved in it, m.

@@ -6,9 +6,11 @@ use carom_bodies::{Body, Kinematics};
 use carom_contact::certificate::Core;
 use carom_contact::{Cylinder, Obstacle, Shape, Side, Sphere, Target};
 use carom_elements::Kind;
-use carom_mesh::{ElementId, Parts, Surface};
+use carom_mesh::{ElementId, Face, Parts, Surface};
 
 use crate::system::System;
+
+type Vec3 = [f64; 3];
 
 /// Depth of a vertex of a core below the surface, over the size of the elements normal to it.
 pub const DEPTH: f64 = 0.05;
@@ -16,8 +18,15 @@ pub const DEPTH: f64 = 0.05;
 /// Distance that others keep from a vertex, over its depth.
 const KEPT: f64 = 0.05;
 
+/// Least sine of the angle between the way to a vertex and a face above it.
+const BELOW: f64 = 0.1;
+
 /// Part of half a thickness that others are to stay out of.
 const HALF: f64 = 0.5;
+
+/// Part of half the thickness of a shell or a beam that the core of a solid may be below its surface against it: a point of the solid that has passed the
+/// middle faces the other side.
+const WITHIN: f64 = 0.25;
 
 /// The same of the radius of a rigid shape.
 const OF_RADIUS: f64 = 0.9;
@@ -103,9 +112,18 @@ impl System {
                 }
             }
         }
-        let vertices = surface.nodes.iter().zip(&around);
+        let mut normals: Vec<Vec<Vec3>> = vec![Vec::new(); surface.nodes.len()];
+        for face in &surface.faces {
+            let normal = self.outward(face);
+            for &node in face.corners() {
+                if let Some(place) = surface.index_of(node) {
+                    normals[place].push(normal);
+                }
+            }
+        }
+        let vertices = surface.nodes.iter().zip(around.iter().zip(&normals));
         let vertices: Vec<(Vec<(u32, f64)>, f64)> = vertices
-            .map(|(&node, cells)| self.vertex(node, cells))
+            .map(|(&node, (cells, normals))| self.vertex(node, cells, normals))
             .collect();
         let patches = surface.faces.iter().map(|face| {
             let corners = face.corners().iter();
@@ -116,30 +134,91 @@ impl System {
         self.made(&vertices, &patches)
     }
 
-    /// The weights of a vertex below a node of the mesh, with the distance that others keep from it, m.
-    fn vertex(&self, node: u32, cells: &[ElementId]) -> (Vec<(u32, f64)>, f64) {
-        let mut weights = BTreeMap::from([(node, 1.0)]);
+    /// The unit normal of a face of a cell, out of that.
+    fn outward(&self, face: &Face) -> Vec3 {
+        let x = &self.mesh.nodes;
+        let corners = face.corners();
+        let from = x[corners[0] as usize];
+        let side = |node: u32| [0, 1, 2].map(|i| x[node as usize][i] - from[i]);
+        let mut normal = [0.0; 3];
+        for pair in corners[1..].windows(2) {
+            let part = cross(&side(pair[0]), &side(pair[1]));
+            normal = [0, 1, 2].map(|i| normal[i] + part[i]);
+        }
+        if let [_, other] = corners {
+            normal = cross(&side(*other), &[0.0, 0.0, 1.0]);
+        }
+        let middle = self.middle(face.parent);
+        let inward = [0, 1, 2].map(|i| middle[i] - from[i]);
+        let sign = if dot(&normal, &inward) > 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let size = dot(&normal, &normal).sqrt().max(f64::MIN_POSITIVE);
+        normal.map(|n| sign * n / size)
+    }
+
+    fn middle(&self, cell: ElementId) -> Vec3 {
+        let nodes = self.mesh.element_nodes(cell);
+        let places = nodes.iter().map(|&node| self.mesh.nodes[node as usize]);
+        let sum = places.fold([0.0; 3], |sum, x| [0, 1, 2].map(|i| sum[i] + x[i]));
+        sum.map(|sum: f64| sum / nodes.len() as f64)
+    }
+
+    /// The weights of a vertex below a node of the mesh, that of the node first, with the distance that others keep from it, m.
+    ///
+    /// At an inner corner, where the mean of the ways to the middles of the cells leads out of the body, it is on the way to the neighbour that is furthest
+    /// below all faces there; where there is none, at the node.
+    fn vertex(&self, node: u32, cells: &[ElementId], normals: &[Vec3]) -> (Vec<(u32, f64)>, f64) {
         let share = 1.0 / cells.len() as f64;
+        let alpha = |cell: ElementId| DEPTH / height_of_middle(self.mesh.kind(cell).table().linear);
+        let mut weights = BTreeMap::from([(node, 1.0)]);
         for &cell in cells {
-            let alpha = share * DEPTH / height_of_middle(self.mesh.kind(cell).table().linear);
-            let nodes = self.mesh.element_nodes(cell);
+            let (alpha, nodes) = (share * alpha(cell), self.mesh.element_nodes(cell));
             *weights.entry(node).or_default() -= alpha;
             for &other in nodes {
                 *weights.entry(other).or_default() += alpha / nodes.len() as f64;
             }
         }
+        let mut shift = self.shift(node, &weights);
+        if below(&shift, normals) < BELOW {
+            // a neighbour is twice as far as the middle
+            let alpha = cells
+                .iter()
+                .map(|&cell| 0.5 * share * alpha(cell))
+                .sum::<f64>();
+            let neighbours = weights.keys().filter(|other| **other != node);
+            let ways =
+                neighbours.map(|&other| BTreeMap::from([(node, 1.0 - alpha), (other, alpha)]));
+            let depth = |way: &BTreeMap<u32, f64>| below(&self.shift(node, way), normals);
+            let best = ways.reduce(|best, way| match depth(&way) > depth(&best) {
+                true => way,
+                false => best,
+            });
+            weights = best
+                .filter(|way| depth(way) >= BELOW)
+                .unwrap_or_else(|| BTreeMap::from([(node, 1.0)]));
+            shift = self.shift(node, &weights);
+        }
+        let depth = dot(&shift, &shift).sqrt();
+        let own = weights.remove(&node).map(|weight| (node, weight));
+        let numbered = own
+            .into_iter()
+            .chain(weights)
+            .map(|(node, weight)| (self.number[node as usize], weight));
+        (numbered.collect(), KEPT * depth)
+    }
+
+    /// From a node to where weights put a vertex, m.
+    fn shift(&self, node: u32, weights: &BTreeMap<u32, f64>) -> Vec3 {
         let x = &self.mesh.nodes;
-        let shift = [0, 1, 2].map(|i| {
-            let mean = weights
+        [0, 1, 2].map(|i| {
+            let parts = weights
                 .iter()
                 .map(|(&other, weight)| weight * (x[other as usize][i] - x[node as usize][i]));
-            mean.sum::<f64>()
-        });
-        let depth = shift.iter().map(|s| s * s).sum::<f64>().sqrt();
-        let numbered = weights
-            .iter()
-            .map(|(&node, weight)| (self.number[node as usize], *weight));
-        (numbered.collect(), KEPT * depth)
+            parts.sum::<f64>()
+        })
     }
 
     /// Of axes and middles, and what others keep from them; none of beams beside their nodes.
@@ -171,7 +250,8 @@ impl System {
             });
             patches.push((self.mesh.kind(cell), corners.collect()));
         }
-        Some(self.made(&vertices, &patches))
+        let core = self.made(&vertices, &patches);
+        Some(core.with_depth(WITHIN * half))
     }
 
     /// Of spheres and cylinders that bodies stay outside of: of others no part comes between nodes unseen, or their faces tell.
@@ -207,7 +287,8 @@ impl System {
             .collect();
         let corners = (0..places.len() as u32).collect();
         Some(CoreOf {
-            core: Core::new(&vertices, &[(kind, corners)], |_| [0.0; 3]),
+            core: Core::new(&vertices, &[(kind, corners)], |_| [0.0; 3])
+                .with_depth((1.0 - OF_RADIUS) * radius),
             owner: CoreOwner::Shape(contact, places),
         })
     }
@@ -220,6 +301,24 @@ impl System {
     fn made(&self, vertices: &[(Vec<(u32, f64)>, f64)], patches: &[(Kind, Vec<u32>)]) -> Core {
         Core::new(vertices, patches, |node| self.x[node as usize])
     }
+}
+
+/// The least sine of the angle at which a way goes below some faces with these normals; negative where it goes out of one.
+fn below(way: &Vec3, normals: &[Vec3]) -> f64 {
+    let size = dot(way, way).sqrt();
+    let sines = normals.iter().map(|normal| -dot(way, normal) / size);
+    sines.fold(f64::INFINITY, f64::min)
+}
+
+fn dot(a: &Vec3, b: &Vec3) -> f64 {
+    (0..3).map(|i| a[i] * b[i]).sum()
+}
+
+fn cross(a: &Vec3, b: &Vec3) -> Vec3 {
+    [0, 1, 2].map(|i| {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        a[j] * b[k] - a[k] * b[j]
+    })
 }
 
 /// How far the middle of a cell is above a face, over its size normal to that.

@@ -25,6 +25,10 @@ pub struct Core {
     ends: Vec<u32>,
     /// Mean diagonal of the box around a patch in the reference configuration, m.
     size: f64,
+    /// Farthest that a vertex is below its node in the reference configuration, m.
+    inset: f64,
+    /// How deep others may come below the surface, m.
+    depth: f64,
 }
 
 /// A vertex of a core.
@@ -52,7 +56,7 @@ impl Piece {
 
 impl Core {
     /// A core of patches: of each its kind and its vertices, in the order of the nodes of the kind. Of each vertex the nodes (system numbers) with
-    /// their weights, whose sum is 1, and the distance that others are to keep from it, m. `place`: of a node in the reference configuration, m.
+    /// their weights, whose sum is 1, first that of the surface above it, and the distance that others are to keep from it, m. `place`: of a node in the reference configuration, m.
     pub fn new(
         vertices: &[(Vec<(u32, f64)>, f64)],
         patches: &[(Kind, Vec<u32>)],
@@ -87,7 +91,38 @@ impl Core {
         core.place(&places, &mut at);
         let sizes = (0..core.ends.len()).map(|patch| core.bounds(patch, &at).diagonal());
         core.size = sizes.sum::<f64>() / core.ends.len().max(1) as f64;
+        core.inset = core.most_inset(&places, &at);
+        core.depth = core.inset;
         core
+    }
+
+    /// Of a body whose surface is not that of its vertices: others may come so deep below it, m.
+    #[must_use]
+    pub fn with_depth(self, depth: f64) -> Core {
+        Core { depth, ..self }
+    }
+
+    /// Part of the way from its nodes to its vertices at which the latter are, against another core: nothing is to go through a thin body before that is
+    /// told. Without an end to what others may do, all of it.
+    pub fn part_against(&self, other: &Core) -> f64 {
+        match other.depth > 0.0 && other.depth < self.inset {
+            true => other.depth / self.inset,
+            false => 1.0,
+        }
+    }
+
+    fn most_inset(&self, places: &[Vec3], vertices: &[Vec3]) -> f64 {
+        let mut begin = 0;
+        let mut most = 0.0_f64;
+        for (vertex, x) in self.vertices.iter().zip(vertices) {
+            if let Some((node, _)) = self.weights.get(begin) {
+                let node = &places[*node as usize];
+                let square: f64 = (0..3).map(|i| (x[i] - node[i]).powi(2)).sum();
+                most = most.max(square.sqrt());
+            }
+            begin = vertex.end as usize;
+        }
+        most
     }
 
     fn push_patch(&mut self, kind: Kind, corners: &[u32], told: &mut BTreeSet<[u32; 3]>) {
@@ -134,6 +169,16 @@ impl Core {
     /// Nodes that move it, by system number, ascending; none of a rigid shape, whose vertices are given.
     pub fn nodes(&self) -> &[u32] {
         &self.nodes
+    }
+
+    /// Moves vertices (m) to a part of the way to them from the nodes above them, which are at `places` (m).
+    pub fn shrink(&self, places: &[Vec3], part: f64, vertices: &mut [Vec3]) {
+        let mut begin = 0;
+        for (vertex, x) in self.vertices.iter().zip(vertices) {
+            let node = &places[self.weights[begin].0 as usize];
+            *x = [0, 1, 2].map(|i| node[i] + part * (x[i] - node[i]));
+            begin = vertex.end as usize;
+        }
     }
 
     /// Places of its vertices (m) where its nodes are at `places`.

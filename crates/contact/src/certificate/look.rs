@@ -22,6 +22,14 @@ pub struct Moved<'a> {
     pub before: &'a [Vec3],
     /// Its vertices at the end.
     pub after: &'a [Vec3],
+    /// Part of the way to them from the nodes at which the vertices are ([`Core::part_against`]).
+    pub part: f64,
+}
+
+impl Moved<'_> {
+    fn most_kept(&self) -> f64 {
+        self.part * self.core.most_kept()
+    }
 }
 
 /// Where and when two cores met.
@@ -73,7 +81,7 @@ pub fn look([one, other]: [Moved; 2], dim: usize, room: &mut Room) -> Look {
             _ => size[0].max(size[1]),
         };
     let rounding = ROUNDING * whole_a.reach().max(whole_b.reach());
-    let keeps = one.core.most_kept() + other.core.most_kept();
+    let keeps = one.most_kept() + other.most_kept();
     let boxes = whole_a.apart(&whole_b) - pair::NEAR * keeps - rounding;
     let mut found = Look {
         met: None,
@@ -189,7 +197,7 @@ impl Pairs<'_, '_> {
 
     fn look(&mut self, pieces: [&Piece; 2]) {
         let keeps: f64 = (0..2)
-            .map(|k| self.sides[k].core.keeps(pieces[k]))
+            .map(|k| self.sides[k].part * self.sides[k].core.keeps(pieces[k]))
             .sum::<f64>()
             + self.rounding;
         let places = [0, 1].map(|k| {
@@ -233,12 +241,11 @@ impl Pairs<'_, '_> {
     }
 }
 
-/// Whether two cores that stand meet, or are no further apart than they are to keep.
-pub fn overlap(cores: [(&Core, &[Vec3]); 2], dim: usize, room: &mut Room) -> bool {
-    let still = cores.map(|(core, at)| Moved {
-        core,
-        before: at,
-        after: at,
+/// Whether two cores meet at the start of a step, or are no further apart than they are to keep.
+pub fn overlap(moved: [Moved; 2], dim: usize, room: &mut Room) -> bool {
+    let still = moved.map(|moved| Moved {
+        after: moved.before,
+        ..moved
     });
     look(still, dim, room).met.is_some() || pierce(still, dim, room)
 }

@@ -85,6 +85,9 @@ pub(super) fn apart_at_end(one: &[Moving], other: &[Moving]) -> f64 {
     n.map_or(0.0, |n| pair.separation(n, 1.0))
 }
 
+/// Volume over the cube of the largest side at which four places lie in one plane.
+const FLAT: f64 = 1e-12;
+
 /// Whether an edge goes through a triangle.
 pub(super) fn pierces(edge: &[Vec3; 3], triangle: &[Vec3; 3]) -> bool {
     let [a, b, c] = triangle;
@@ -92,7 +95,15 @@ pub(super) fn pierces(edge: &[Vec3; 3], triangle: &[Vec3; 3]) -> bool {
         |p: &Vec3, q: &Vec3, r: &Vec3, s: &Vec3| dot(&sub(q, p), &cross(&sub(r, p), &sub(s, p)));
     let ends = [&edge[0], &edge[1]].map(|end| volume(a, b, c, end));
     let around = [(a, b), (b, c), (c, a)].map(|(from, to)| volume(&edge[0], &edge[1], from, to));
-    let one_sided = around.iter().all(|v| *v > 0.0) || around.iter().all(|v| *v < 0.0);
+    // volumes of what lies in one plane are rounding, and of any sign
+    let places = [a, b, c, &edge[0], &edge[1]];
+    let sides = places.iter().flat_map(|p| sub(p, a));
+    let size = sides.fold(0.0, |most: f64, side| most.max(side.abs()));
+    let flat = FLAT * size.powi(3);
+    let one_sided = around.iter().all(|v| *v > flat) || around.iter().all(|v| *v < -flat);
+    if ends.iter().any(|v| v.abs() <= flat) {
+        return false;
+    }
     ends[0] * ends[1] < 0.0 && one_sided
 }
 

@@ -46,6 +46,7 @@ fn found(core: &Core, one: &[[Vec3; 4]; 2], other: &[[Vec3; 4]; 2]) -> Look {
         core,
         before: &ends[0],
         after: &ends[1],
+        part: 1.0,
     });
     look(sides, 3, &mut Room::default())
 }
@@ -137,7 +138,12 @@ fn an_edge_through_a_face_is_an_overlap() {
         ([-2.0, -2.0, -2.0], 1.0, false),
     ] {
         let small = moved(shift, size);
-        let cores: [(&Core, &[Vec3]); 2] = [(&core, &large), (&core, &small)];
+        let cores = [&large, &small].map(|at| Moved {
+            core: &core,
+            before: at,
+            after: at,
+            part: 1.0,
+        });
         assert_eq!(overlap(cores, 3, &mut room), overlaps, "{shift:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! A core that moves in a step.
 
 use carom_contact::Target;
-use carom_contact::certificate::Moved;
+use carom_contact::certificate::{Core, Moved};
 use carom_mesh::Bounds;
 
 use crate::system::{CoreOf, CoreOwner, Motion, System};
@@ -15,7 +15,7 @@ pub(super) struct Mover {
     /// Places of its nodes at the end of the step, m.
     pub(super) nodes: Vec<Vec3>,
     /// Vertices at the start and at the end of the step, m.
-    pub(super) before: Vec<Vec3>,
+    before: Vec<Vec3>,
     after: Vec<Vec3>,
     /// Places of the nodes at the start of the step.
     pub(super) earlier: Vec<Vec3>,
@@ -88,11 +88,26 @@ impl Mover {
         }
     }
 
-    pub(super) fn moved(&self) -> Moved<'_> {
+    /// Against another; `room`: for the vertices where these are nearer to the surface than against a body like itself.
+    pub(super) fn against<'a>(&'a self, other: &Core, room: &'a mut [Vec<Vec3>; 2]) -> Moved<'a> {
+        let core = &self.of.core;
+        let part = core.part_against(other);
+        if part < 1.0 {
+            let [before, after] = &mut *room;
+            before.clone_from(&self.before);
+            after.clone_from(&self.after);
+            core.shrink(&self.earlier, part, before);
+            core.shrink(&self.nodes, part, after);
+        }
+        let [before, after] = match part < 1.0 {
+            true => [&room[0][..], &room[1][..]],
+            false => [&self.before[..], &self.after[..]],
+        };
         Moved {
-            core: &self.of.core,
-            before: &self.before,
-            after: &self.after,
+            core,
+            before,
+            after,
+            part,
         }
     }
 
