@@ -138,6 +138,9 @@ impl System {
     fn outward(&self, face: &Face) -> Vec3 {
         let x = &self.mesh.nodes;
         let corners = face.corners();
+        if corners.len() == 1 {
+            return face.axis;
+        }
         let from = x[corners[0] as usize];
         let side = |node: u32| [0, 1, 2].map(|i| x[node as usize][i] - from[i]);
         let mut normal = [0.0; 3];
