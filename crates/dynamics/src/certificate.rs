@@ -21,6 +21,10 @@ use sides::Sides;
 
 type Vec3 = [f64; 3];
 
+/// Part of the depth to which surfaces may go into each other that they move in a step in which a contact sees them meet: a law in the rate acts at
+/// the end of the step after the one in which they do.
+const SEEN: f64 = 0.25;
+
 /// Pairs up to which all are followed; of more those that are near.
 const FOLLOWED: usize = 2000;
 
@@ -265,7 +269,8 @@ impl Certificate {
     }
 
     /// Looks at the end of an attempt at a step, the state at `time` (s) after the one at `before` (s), the last one that was taken. Whether two that a
-    /// contact is between go through each other: they may not in a smaller step. How deep they go under the force of a law that yields is for that.
+    /// contact is between go through each other, and move by more than surfaces may go into each other: they may not in a smaller step. How deep they go
+    /// under the force of a law that yields is for that.
     pub fn look_at(&mut self, system: &System, (time, end): (f64, &State), before: f64) -> bool {
         self.drop_attempt();
         self.kept.follow(&self.told);
@@ -332,7 +337,12 @@ impl Certificate {
             let level = system.contacts[contact].law.get().level();
             level == Level::GapAndRate
         };
-        self.is_cut |= contact.is_some_and(|contact| !(held && yields(contact)));
+        // who moves that little in a step has been seen by a contact before, if at all
+        let [one, other] = pair.of.map(|number| &self.movers[number as usize]);
+        let [a, b] = [&one.of.core, &other.of.core];
+        let margin = a.margin(a.part_against(b)) + b.margin(b.part_against(a));
+        self.is_cut |= relative(&one.motion, &other.motion) > SEEN * margin
+            && contact.is_some_and(|contact| !(held && yields(contact)));
         self.told.crossings.push(Crossing {
             of: pair.of,
             contact,

@@ -18,9 +18,6 @@ pub const DEPTH: f64 = 0.05;
 /// Distance that others keep from a vertex, over its depth.
 const KEPT: f64 = 0.05;
 
-/// Least sine of the angle between the way to a vertex and a face above it.
-const BELOW: f64 = 0.1;
-
 /// Part of half a thickness that others are to stay out of.
 const HALF: f64 = 0.5;
 
@@ -185,7 +182,7 @@ impl System {
             }
         }
         let mut shift = self.shift(node, &weights);
-        if below(&shift, normals) < BELOW {
+        if below(&shift, normals) <= 0.0 {
             // a neighbour is twice as far as the middle
             let alpha = cells
                 .iter()
@@ -200,7 +197,7 @@ impl System {
                 false => best,
             });
             weights = best
-                .filter(|way| depth(way) >= BELOW)
+                .filter(|way| depth(way) > 0.0)
                 .unwrap_or_else(|| BTreeMap::from([(node, 1.0)]));
             shift = self.shift(node, &weights);
         }

@@ -111,6 +111,14 @@ impl Core {
         }
     }
 
+    /// How deep another may come before the two meet, m, where the vertices are at a part of the way to them.
+    pub fn margin(&self, part: f64) -> f64 {
+        match self.inset > 0.0 {
+            true => part * self.inset,
+            false => self.depth,
+        }
+    }
+
     fn most_inset(&self, places: &[Vec3], vertices: &[Vec3]) -> f64 {
         let mut begin = 0;
         let mut most = 0.0_f64;

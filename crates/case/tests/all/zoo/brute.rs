@@ -4,10 +4,11 @@
 //! It shares nothing with the certificate: the sides are those of the generator, and a crossing is one of surfaces at an instant, which no plane of
 //! separation and no distance from an earlier step tells.
 //!
-//! A body is not its surface here but one a part of the way from it to the middles of the cells, of a hollow body each side by itself. A brick, whose middle is half its size below a
+//! A body is not its surface here but one a part of the way from it to the middles of the cells, of a hollow body each side by itself. A brick, whose
+//! middle is half its size below a
 //! side, has the certificate's core, 1/20 of the size below, at a tenth of that way, a triangle at 0.15, a tetrahedron at a fifth. So bodies that meet at 0.3 of
-//! the way have cores in each other, and since they had not at the start, these have crossed. Bodies that do not even meet at 0.05 of the way, half as
-//! deep at least, have cores that never did.
+//! the way have cores in each other, and since they had not at the start, these have crossed. Bodies that do not even meet at 0.02 of the way, a
+//! fifth as deep and less deep than cores against thin bodies are, have cores that never did.
 //!
 //! A shell is its middle surface. That of two shells in contact are apart by half of both thicknesses, and that of a shell is outside of a solid by half
 //! of its own: where middle surfaces go through each other, or through what is looked at of a solid, these have crossed.
@@ -20,7 +21,7 @@ use super::parts::{Cells, Part, Vec3};
 const DEEP: f64 = 0.3;
 
 /// The same at which those that never meet are certain not to have.
-const SHALLOW: f64 = 0.05;
+const SHALLOW: f64 = 0.02;
 
 /// Distance of what meets, m: rounding, of bodies of some 0.1 m.
 const TOUCH: f64 = 1e-9;
