@@ -5,21 +5,20 @@
 
 mod mover;
 mod sides;
+pub(crate) mod told;
 
 use std::collections::BTreeSet;
 
 use carom_contact::certificate::{Look, Room, look, overlap};
 use carom_contact::law::Level;
 use carom_mesh::{Bounds, Face};
-use serde::{Deserialize, Serialize};
 
 use crate::state::State;
 use crate::system::{Motion, System};
 use mover::{Mover, relative};
-pub use sides::Side;
-use sides::Sides;
-
-type Vec3 = [f64; 3];
+use sides::{Side, Sides};
+use told::Pair;
+pub use told::{Crossing, Told};
 
 /// Part of the depth to which surfaces may go into each other that they move in a step in which a contact sees them meet: a law in the rate acts at
 /// the end of the step after the one in which they do.
@@ -53,71 +52,6 @@ pub struct Findings {
     /// What it has found.
     pub told: Told,
     sides: Sides,
-}
-
-/// What a certificate has found, and what it goes on from.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Told {
-    pairs: Vec<Pair>,
-    /// What any two may move relative to each other until pairs are chosen anew, m.
-    left: f64,
-    /// Pairs that met.
-    pub crossings: Vec<Crossing>,
-    /// Pairs whose cores meet at the start, ascending.
-    overlapping: Vec<[u32; 2]>,
-    /// Pairs of nodes, edges and triangles that were looked at.
-    pub tested: u64,
-}
-
-/// A pair that is followed.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Pair {
-    of: [u32; 2],
-    /// What both may still move towards each other, m.
-    left: f64,
-}
-
-/// Two that met, for the first time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Crossing {
-    /// Their numbers ([`Findings::names`]).
-    pub of: [u32; 2],
-    /// The contact that is between them, if there is one.
-    pub contact: Option<usize>,
-    /// Whether that has a force at the end of the step: how deep it lets them go is told by its records.
-    pub held: bool,
-    /// When, s.
-    pub time: f64,
-    /// Where, m.
-    pub place: Vec3,
-}
-
-impl Told {
-    /// Becomes a copy, in the memory that it has.
-    fn follow(&mut self, other: &Told) {
-        self.pairs.clone_from(&other.pairs);
-        self.left = other.left;
-        self.crossings.clone_from(&other.crossings);
-        self.overlapping.clone_from(&other.overlapping);
-        self.tested = other.tested;
-    }
-
-    /// Whether it is of a system.
-    pub fn is_of(&self, system: &System) -> bool {
-        let (cores, contacts) = (system.cores().len(), system.contacts.len());
-        let known = |of: &[u32; 2]| of.iter().all(|number| (*number as usize) < cores);
-        self.pairs.iter().all(|pair| known(&pair.of))
-            && self.overlapping.iter().all(known)
-            && self.crossings.iter().all(|crossing| {
-                known(&crossing.of) && crossing.contact.is_none_or(|contact| contact < contacts)
-            })
-    }
-
-    /// Those that passed through each other and are of some kind.
-    pub fn those(&self, is: impl Fn(&Crossing) -> bool) -> Vec<&Crossing> {
-        let all = self.crossings.iter();
-        all.filter(|crossing| is(crossing)).collect()
-    }
 }
 
 impl Findings {

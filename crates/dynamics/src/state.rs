@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 use crate::assembly_energy::AssemblyEnergies;
-use crate::certificate::Told;
+use crate::certificate::told::Told;
 use crate::control::Control;
 use crate::exchange::Exchange;
 use crate::impact::Impact;

@@ -6,7 +6,7 @@ use crate::system::{ContactPair, CoreOf, CoreOwner, System};
 
 /// Whose a core is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub(super) enum Side {
     /// A body, by its number.
     Body(usize),
     /// The rigid shape of a contact, by the number of that.

@@ -5,10 +5,9 @@
 //! separation and no distance from an earlier step tells.
 //!
 //! A body is not its surface here but one a part of the way from it to the middles of the cells, of a hollow body each side by itself. A brick, whose
-//! middle is half its size below a
-//! side, has the certificate's core, 1/20 of the size below, at a tenth of that way, a triangle at 0.15, a tetrahedron at a fifth. So bodies that meet at 0.3 of
-//! the way have cores in each other, and since they had not at the start, these have crossed. Bodies that do not even meet at 0.02 of the way, a
-//! fifth as deep and less deep than cores against thin bodies are, have cores that never did.
+//! middle is half its size below a side, has the certificate's core, 1/20 of the size below, at a tenth of that way, a triangle at 0.15, a tetrahedron
+//! at a fifth. So bodies that meet at 0.3 of the way have cores in each other, and since they had not at the start, these have crossed. Bodies that do
+//! not even meet at 0.02 of the way, less deep than cores against thin bodies are, have cores that never did.
 //!
 //! A shell is its middle surface. That of two shells in contact are apart by half of both thicknesses, and that of a shell is outside of a solid by half
 //! of its own: where middle surfaces go through each other, or through what is looked at of a solid, these have crossed.
