@@ -90,7 +90,7 @@ pub struct Newton {
     #[serde(default = "thirty")]
     #[schemars(extend("minimum" = 1))]
     pub passes: u32,
-    /// Number of times that a failed step is halved before the run ends.
+    /// Number of times that a failed step is halved before the run ends. With 0 steps stay whole, also those in which bodies pass through each other.
     #[serde(default = "six")]
     #[schemars(extend("minimum" = 0, "maximum" = 20))]
     pub halvings: u32,

@@ -31,7 +31,7 @@ pub(super) struct Pair {
 /// Two that met, for the first time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Crossing {
-    /// Their numbers ([`Findings::names`]).
+    /// Their numbers ([`names`](crate::Findings::names)).
     pub of: [u32; 2],
     /// The contact that is between them, if there is one.
     pub contact: Option<usize>,

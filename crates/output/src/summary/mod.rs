@@ -153,7 +153,7 @@ pub struct Time {
 pub struct Rejected {
     /// A contact closed within the step.
     pub closing: u64,
-    /// Because a point passed what it faces, without a force.
+    /// Bodies with a contact between them went through each other.
     pub passage: u64,
     /// Energy grew.
     pub energy_growth: u64,
