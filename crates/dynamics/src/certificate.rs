@@ -9,7 +9,7 @@ pub(crate) mod told;
 
 use std::collections::BTreeSet;
 
-use carom_contact::certificate::{Look, Room, look, overlap};
+use carom_contact::certificate::{Core, Look, Room, look, overlap};
 use carom_contact::law::Level;
 use carom_mesh::{Bounds, Face};
 
@@ -242,6 +242,14 @@ impl Certificate {
         crossings.get_or_insert_default().follow(&self.told);
     }
 
+    /// The state that was taken, whose frames have been turned since: the next step starts from its bits.
+    pub(crate) fn start_from(&mut self, system: &System, state: &State) {
+        for mover in &mut self.movers {
+            mover.take(system, (state.time, &state.motion));
+            mover.accept();
+        }
+    }
+
     fn drop_attempt(&mut self) {
         if std::mem::take(&mut self.is_trying) {
             std::mem::swap(&mut self.told, &mut self.kept);
@@ -271,11 +279,10 @@ impl Certificate {
             let level = system.contacts[contact].law.get().level();
             level == Level::GapAndRate
         };
-        // who moves that little in a step has been seen by a contact before, if at all
-        let [one, other] = pair.of.map(|number| &self.movers[number as usize]);
-        let [a, b] = [&one.of.core, &other.of.core];
-        let margin = a.margin(a.part_against(b)) + b.margin(b.part_against(a));
-        self.is_cut |= relative(&one.motion, &other.motion) > SEEN * margin
+        let of = pair.of.map(|number| &self.movers[number as usize]);
+        let limit = most_unseen(of.map(|mover| &mover.of.core), held);
+        self.is_cut |= limit > 0.0
+            && relative(&of[0].motion, &of[1].motion) > limit
             && contact.is_some_and(|contact| !(held && yields(contact)));
         self.told.crossings.push(Crossing {
             of: pair.of,
@@ -395,5 +402,17 @@ impl Certificate {
         }
         self.told.pairs.sort_by_key(|pair| pair.of);
         self.told.left = self.near;
+    }
+}
+
+/// How far two may move towards each other in a step, m, where a smaller one would not show a contact more of what it has missed. Where they have a force
+/// already (`held`) that is more: a smaller step makes the force of an impulse larger.
+fn most_unseen([one, other]: [&Core; 2], held: bool) -> f64 {
+    match held {
+        true => one.half().min(other.half()),
+        false => {
+            let margin = |a: &Core, b: &Core| a.margin(a.part_against(b));
+            SEEN * (margin(one, other) + margin(other, one))
+        }
     }
 }

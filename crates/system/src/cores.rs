@@ -134,7 +134,8 @@ impl System {
     /// The unit normal of a face of a cell, out of that.
     fn outward(&self, face: &Face) -> Vec3 {
         let x = &self.mesh.nodes;
-        let corners = face.corners();
+        let linear = face.kind.table().linear.table();
+        let corners = &face.corners()[..linear.nodes];
         if corners.len() == 1 {
             return face.axis;
         }
@@ -169,7 +170,7 @@ impl System {
     /// The weights of a vertex below a node of the mesh, that of the node first, with the distance that others keep from it, m.
     ///
     /// At an inner corner, where the mean of the ways to the middles of the cells leads out of the body, it is on the way to the neighbour that is furthest
-    /// below all faces there; where there is none, at the node.
+    /// below all faces there, if any is.
     fn vertex(&self, node: u32, cells: &[ElementId], normals: &[Vec3]) -> (Vec<(u32, f64)>, f64) {
         let share = 1.0 / cells.len() as f64;
         let alpha = |cell: ElementId| DEPTH / height_of_middle(self.mesh.kind(cell).table().linear);
@@ -182,7 +183,8 @@ impl System {
             }
         }
         let mut shift = self.shift(node, &weights);
-        if below(&shift, normals) <= 0.0 {
+        let is_out = |way: &Vec3| dot(way, way) == 0.0 || below(way, normals) <= 0.0;
+        if is_out(&shift) {
             // a neighbour is twice as far as the middle
             let alpha = cells
                 .iter()
@@ -192,13 +194,12 @@ impl System {
             let ways =
                 neighbours.map(|&other| BTreeMap::from([(node, 1.0 - alpha), (other, alpha)]));
             let depth = |way: &BTreeMap<u32, f64>| below(&self.shift(node, way), normals);
+            let ways = ways.filter(|way| !is_out(&self.shift(node, way)));
             let best = ways.reduce(|best, way| match depth(&way) > depth(&best) {
                 true => way,
                 false => best,
             });
-            weights = best
-                .filter(|way| depth(way) > 0.0)
-                .unwrap_or_else(|| BTreeMap::from([(node, 1.0)]));
+            weights = best.unwrap_or(weights);
             shift = self.shift(node, &weights);
         }
         let depth = dot(&shift, &shift).sqrt();

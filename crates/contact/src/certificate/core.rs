@@ -12,6 +12,12 @@ use carom_mesh::surface::pieces;
 
 type Vec3 = [f64; 3];
 
+/// Half the size of an element over how far a vertex is below its surface.
+const OF_INSET: f64 = 10.0;
+
+/// Half a thickness over how deep others may come.
+const OF_DEPTH: f64 = 4.0;
+
 /// The core of a body or of a rigid shape.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Core {
@@ -116,6 +122,14 @@ impl Core {
         match self.inset > 0.0 {
             true => part * self.inset,
             false => self.depth,
+        }
+    }
+
+    /// Half the thickness of what is below the surface, m: of an element of a solid, of a shell or a beam, or the like.
+    pub fn half(&self) -> f64 {
+        match self.inset > 0.0 {
+            true => OF_INSET * self.inset,
+            false => OF_DEPTH * self.depth,
         }
     }
 

@@ -109,6 +109,7 @@ impl Driver {
     fn share(&mut self, ranks: &Ranks, (watched, own): (&Watched, OwnElements)) {
         self.certificate = None;
         self.attempt.state.crossings = None;
+        self.attempt.next.crossings = None;
         let system = Arc::clone(&self.attempt.system);
         let map = self.attempt.maps.first();
         let at_ends =

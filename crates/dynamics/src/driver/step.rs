@@ -23,8 +23,8 @@ const DEEPEST: u32 = 12;
 
 impl Driver {
     /// Takes one step. With an adaptive step, attempts in which a contact closes, energy grows, or no solution is found are
-    /// dropped, and a smaller one is tried. Another step is taken whole, or in halves of halves where it finds no equilibrium, and
-    /// of an explicit scheme where elements have become too small for it; a step that is a fraction of the critical one is shorter then.
+    /// dropped, and a smaller one is tried. Another step is taken whole, or in halves of halves where it finds no equilibrium, where bodies go
+    /// through each other, and of an explicit scheme where elements have become too small for it; a step that is a fraction of the critical one is shorter then.
     ///
     /// # Errors
     /// A contact problem without solution, no equilibrium, a motion that is not finite, or energy that grows, with steps that are fixed
@@ -79,11 +79,10 @@ impl Driver {
         let mut indefinite = false;
         // kept only by a step that goes in parts
         let mut start: Option<State> = None;
-        let mut most = self.attempt.most_halvings();
-        let deepest = match self.attempt.system.nonlinear.iteration.halvings {
-            0 => 0,
-            _ => most.max(DEEPEST),
-        };
+        let most = self.attempt.most_halvings();
+        let (mut cuts, mut was_cut) = (true, false);
+        // of linear models the matrices stand, and the schemes may count on equal steps
+        let deepest = if most > 0 { most.max(DEEPEST) } else { 0 };
         let parts = 1u64 << deepest;
         let mut forced = self.is_forced();
         while done < parts {
@@ -93,13 +92,13 @@ impl Driver {
             let dt = size * (part as f64 / parts as f64);
             match self.attempt(dt, dt) {
                 Ok(()) if std::mem::take(&mut forced) => self.withdraw_stages(),
-                Ok(()) if self.crosses(to) && level < deepest => {
+                Ok(()) if self.crosses(to) && cuts && level < deepest => {
                     let step = taken + 1;
                     tracing::debug!("step {step}: bodies went through each other; halved");
                     self.withdraw_stages();
                     control.passed += 1;
                     level += 1;
-                    most = most.max(level);
+                    was_cut = true;
                 }
                 Ok(()) => {
                     self.report.notices.join(&self.attempt.notices);
@@ -116,6 +115,7 @@ impl Driver {
                         self.take_crossings();
                         self.swap_states();
                         self.attempt.state.time = to;
+                        self.start_crossings();
                         // parts of a step are of the same stage
                         (self.attempt.state.step, self.attempt.state.control) = (taken, control);
                     }
@@ -125,6 +125,17 @@ impl Driver {
                     {
                         level -= 1;
                     }
+                }
+                Err(error) if was_cut && level >= most && !error.is_of_any_step() => {
+                    tracing::debug!("step {}: {error} in a part; not cut", taken + 1);
+                    if let Some(start) = start.take() {
+                        self.attempt.state = start;
+                        self.leave_direct();
+                        self.certificate = None;
+                        self.look_from_here();
+                    }
+                    self.report.samples.clear();
+                    (done, level, cuts, was_cut) = (0, whole, false, false);
                 }
                 Err(error) if level < most && !error.is_of_any_step() => {
                     tracing::debug!("step {}: {error}; halved", taken + 1);
@@ -187,6 +198,7 @@ impl Driver {
         self.parts.set_prepared(false);
         self.take_crossings();
         self.swap_states();
+        self.start_crossings();
         self.attempt.show_followed(size);
         self.tell(size);
     }
@@ -226,6 +238,17 @@ impl Driver {
     fn take_crossings(&mut self) {
         if let Some(certificate) = &mut self.certificate {
             certificate.take_attempt(&mut self.attempt.next.crossings);
+        }
+    }
+
+    /// Has the certificate go on from the state, where frames were turned by the steps of their nodes when it was taken.
+    fn start_crossings(&mut self) {
+        if self.attempt.state.motion.frames.is_empty() {
+            return;
+        }
+        let system = self.whole();
+        if let Some(certificate) = &mut self.certificate {
+            certificate.start_from(&system, &self.attempt.state);
         }
     }
 
