@@ -6,6 +6,7 @@
 mod allocation;
 mod beams;
 mod beside;
+mod cores;
 mod crossing;
 mod direct;
 mod discrete;
