@@ -9,7 +9,7 @@ pub(crate) mod told;
 
 use std::collections::BTreeSet;
 
-use carom_contact::certificate::{Core, Look, Room, look, overlap};
+use carom_contact::certificate::{Core, Look, Moved, Room, look, overlap};
 use carom_contact::law::Level;
 use carom_mesh::{Bounds, Face};
 
@@ -27,18 +27,13 @@ const SEEN: f64 = 0.25;
 /// Pairs up to which all are followed; of more those that are near.
 const FOLLOWED: usize = 2000;
 
-/// Looks at the steps of a run: at an attempt, which is then taken or dropped.
+/// Looks at the steps of a run: at an attempt, which is then taken or dropped. What it finds is part of the states.
 #[derive(Debug)]
 pub struct Certificate {
     movers: Vec<Mover>,
     sides: Sides,
-    told: Told,
-    /// What was told before the attempt under way.
-    kept: Told,
-    /// Whether an attempt is under way, which may be dropped.
-    is_trying: bool,
-    /// Whether a smaller step may keep two apart that go through each other in it.
-    is_cut: bool,
+    /// What was told when it began, of states before the first look.
+    begun: Told,
     /// Farthest that the boxes of a followed pair are apart, m; infinite where all are followed.
     near: f64,
     room: Room,
@@ -80,44 +75,37 @@ impl Findings {
 }
 
 impl Certificate {
-    /// Of a run whose first state this is.
-    fn begin(system: &System, state: &State) -> Certificate {
-        let mut certificate = Certificate::new(system, state);
-        certificate.choose(system, 0.0);
-        let starting = certificate.told.pairs.iter().map(|pair| pair.of);
-        let starting: Vec<[u32; 2]> = starting.collect();
-        for of in starting {
-            if certificate.overlaps_at_start(system.dim, of) {
-                certificate.told.overlapping.push(of);
-            }
-        }
-        let told = &mut certificate.told;
-        let meet = |pair: &Pair| told.overlapping.binary_search(&pair.of).is_ok();
-        told.pairs.retain(|pair| !meet(pair));
-        certificate
-    }
-
     /// Of a run at a state; none where nobody has looked at the steps before that.
     pub fn of(system: &System, state: &State) -> Option<Certificate> {
-        match &state.crossings {
-            None if state.step > 0 => None,
-            None => Some(Certificate::begin(system, state)),
-            Some(told) => {
-                let mut certificate = Certificate::new(system, state);
-                certificate.told.follow(told);
-                Some(certificate)
-            }
+        if state.crossings.is_none() && state.step > 0 {
+            return None;
         }
+        let mut certificate = Certificate::at(system, (state.time, &state.motion));
+        certificate.begun = match &state.crossings {
+            Some(told) => told.clone(),
+            None => certificate.told_at_start(system),
+        };
+        Some(certificate)
     }
 
-    fn new(system: &System, state: &State) -> Certificate {
-        Certificate::at(system, (state.time, &state.motion))
+    /// What there is to tell of the first state of a run.
+    fn told_at_start(&mut self, system: &System) -> Told {
+        let mut told = Told::default();
+        self.choose(system, &mut told, 0.0);
+        let pairs = std::mem::take(&mut told.pairs);
+        for pair in pairs {
+            match self.overlaps_at_start(system.dim, pair.of) {
+                true => told.overlapping.push(pair.of),
+                false => told.pairs.push(pair),
+            }
+        }
+        told
     }
 
     fn at(system: &System, (time, motion): (f64, &Motion)) -> Certificate {
         let cores = system.cores();
         let sides = Sides::of(system, &cores);
-        let mut movers: Vec<Mover> = cores.into_iter().map(Mover::new).collect();
+        let mut movers: Vec<Mover> = cores.into_iter().map(|of| Mover::new(system, of)).collect();
         for mover in &mut movers {
             mover.take(system, (time, motion));
             mover.earlier.clone_from(&mover.nodes);
@@ -133,10 +121,7 @@ impl Certificate {
         Certificate {
             sides,
             near,
-            told: Told::default(),
-            kept: Told::default(),
-            is_trying: false,
-            is_cut: false,
+            begun: Told::default(),
             room: Room::default(),
             shrunk: Default::default(),
             movers,
@@ -161,8 +146,8 @@ impl Certificate {
             return Vec::new();
         }
         let mut certificate = Certificate::at(system, (0.0, &start));
-        certificate.choose(system, 0.0);
-        let pairs = std::mem::take(&mut certificate.told.pairs);
+        let mut told = Told::default();
+        certificate.choose(system, &mut told, 0.0);
         for (number, mover) in certificate.movers.iter_mut().enumerate() {
             let v = certificate
                 .sides
@@ -173,7 +158,7 @@ impl Certificate {
             }
         }
         let mut met = Vec::new();
-        for Pair { of, .. } in pairs {
+        for Pair { of, .. } in told.pairs {
             let bodies = of.map(|number| certificate.sides.body(number));
             if bodies.contains(&None) || certificate.overlaps_at_start(system.dim, of) {
                 continue;
@@ -186,30 +171,25 @@ impl Certificate {
         met
     }
 
-    /// What was found up to the last step that was taken.
-    pub fn told(&self) -> &Told {
-        match self.is_trying {
-            true => &self.kept,
-            false => &self.told,
-        }
-    }
-
-    /// The same with names.
-    pub fn findings(&self) -> Findings {
+    /// What was found until a state, with names.
+    pub fn findings(&self, state: &State) -> Findings {
         Findings {
-            told: self.told().clone(),
+            told: state.crossings.as_ref().unwrap_or(&self.begun).clone(),
             sides: self.sides.clone(),
         }
     }
 
-    /// Looks at the end of an attempt at a step, the state at `time` (s) after the one at `before` (s), the last one that was taken. Whether two that a
-    /// contact is between go through each other, and move by more than surfaces may go into each other: they may not in a smaller step. How deep they go
-    /// under the force of a law that yields is for that.
-    pub fn look_at(&mut self, system: &System, (time, end): (f64, &State), before: f64) -> bool {
-        self.drop_attempt();
-        self.kept.follow(&self.told);
-        self.is_trying = true;
-        self.is_cut = false;
+    /// Looks at the end of an attempt at a step, the state at `time` (s) after the last one that was taken, that at `before` (s) until which this was
+    /// `told`; `next`: what is told then. Whether two that a contact is between go through each other, and move by more than surfaces may go into each
+    /// other: they may not in a smaller step. How deep they go under the force of a law that yields is for that.
+    pub fn look_at(
+        &mut self,
+        system: &System,
+        (told, before): (Option<&Told>, f64),
+        (time, end): (f64, &State),
+        next: &mut Told,
+    ) -> bool {
+        next.follow(told.unwrap_or(&self.begun));
         if self.movers.len() < 2 {
             return false;
         }
@@ -219,79 +199,84 @@ impl Certificate {
             all = all.union(&mover.motion);
         }
         if self.near.is_finite() {
-            self.told.left -= all.diagonal();
-            if self.told.left <= 0.0 {
-                self.choose(system, all.diagonal());
+            next.left -= all.diagonal();
+            if next.left <= 0.0 {
+                self.choose(system, next, all.diagonal());
             }
         }
-        let mut pairs = std::mem::take(&mut self.told.pairs);
+        let mut pairs = std::mem::take(&mut next.pairs);
+        let mut cuts = false;
         pairs.retain_mut(|pair| {
             let [one, other] = pair.of.map(|number| &self.movers[number as usize].motion);
             pair.left -= relative(one, other);
-            pair.left > 0.0 || self.look(system, (end, [before, time]), pair)
+            if pair.left > 0.0 {
+                return true;
+            }
+            let crossing = self.look(system, (end, [before, time]), (pair, &mut next.tested));
+            cuts |= crossing
+                .as_ref()
+                .is_some_and(|crossing| self.may_be_cut(system, crossing));
+            next.crossings.extend(crossing.clone());
+            crossing.is_none()
         });
-        self.told.pairs = pairs;
-        self.is_cut
+        next.pairs = pairs;
+        cuts
     }
 
-    /// Takes the attempt that was looked at; its findings go to the state.
-    pub fn take_attempt(&mut self, crossings: &mut Option<Told>) {
-        if std::mem::take(&mut self.is_trying) {
-            self.movers.iter_mut().for_each(Mover::accept);
-        }
-        crossings.get_or_insert_default().follow(&self.told);
+    /// The attempt that was looked at last is taken.
+    pub fn accept(&mut self) {
+        self.movers.iter_mut().for_each(Mover::accept);
     }
 
-    /// The state that was taken, whose frames have been turned since: the next step starts from its bits.
-    pub(crate) fn start_from(&mut self, system: &System, state: &State) {
+    /// Goes back to a state.
+    pub(crate) fn go_back(&mut self, system: &System, state: &State) {
         for mover in &mut self.movers {
-            mover.take(system, (state.time, &state.motion));
-            mover.accept();
+            mover.start_from(system, state);
         }
     }
 
-    fn drop_attempt(&mut self) {
-        if std::mem::take(&mut self.is_trying) {
-            std::mem::swap(&mut self.told, &mut self.kept);
+    /// The state that was taken, whose frames have been turned since: what they carry starts the next step from its bits.
+    pub(crate) fn start_from(&mut self, system: &System, state: &State) {
+        for mover in self.movers.iter_mut().filter(|mover| mover.is_carried) {
+            mover.start_from(system, state);
         }
     }
 
-    /// Looks at a pair; whether it is to be followed further.
+    /// Looks at a pair: where and when the two meet, if they do.
     fn look(
         &mut self,
         system: &System,
         (end, [before, time]): (&State, [f64; 2]),
-        pair: &mut Pair,
-    ) -> bool {
+        (pair, tested): (&mut Pair, &mut u64),
+    ) -> Option<Crossing> {
         for number in pair.of {
             self.movers[number as usize].place();
         }
         let found = self.seen(system.dim, pair.of);
-        self.told.tested += found.tested;
+        *tested += found.tested;
         pair.left = found.apart;
-        let Some(met) = found.met else {
-            return true;
-        };
+        let met = found.met?;
         let contact = self.contact_of(system, pair.of);
-        let held =
-            contact.is_some_and(|contact| self.is_held(system, (time, end), (contact, pair.of)));
-        let yields = |contact: usize| {
-            let level = system.contacts[contact].law.get().level();
-            level == Level::GapAndRate
-        };
-        let of = pair.of.map(|number| &self.movers[number as usize]);
-        let limit = most_unseen(of.map(|mover| &mover.of.core), held);
-        self.is_cut |= limit > 0.0
-            && relative(&of[0].motion, &of[1].motion) > limit
-            && contact.is_some_and(|contact| !(held && yields(contact)));
-        self.told.crossings.push(Crossing {
+        let is_held = |contact: usize| self.is_held(system, (time, end), (contact, pair.of));
+        Some(Crossing {
             of: pair.of,
             contact,
-            held,
+            held: contact.is_some_and(is_held),
             time: before + met.part * (time - before),
             place: met.place,
-        });
-        false
+        })
+    }
+
+    /// Whether a smaller step may keep the two apart.
+    fn may_be_cut(&self, system: &System, crossing: &Crossing) -> bool {
+        let Some(contact) = crossing.contact else {
+            return false;
+        };
+        let of = crossing.of.map(|number| &self.movers[number as usize]);
+        let limit = most_unseen(of.map(|mover| &mover.of.core), crossing.held);
+        let yields = system.contacts[contact].law.get().level() == Level::GapAndRate;
+        // without a depth nobody knows
+        limit > 0.0 && relative(&of[0].motion, &of[1].motion) > limit && !(crossing.held && yields)
     }
 
     /// The contact between two: of bodies the first that has faces of one on a side and of the other on the other.
@@ -342,41 +327,27 @@ impl Certificate {
         for number in of {
             self.movers[number as usize].place();
         }
-        let [one, other] = of.map(|number| &self.movers[number as usize]);
-        let [first, second] = &mut self.shrunk;
-        let moved = [
-            one.against(&other.of.core, first),
-            other.against(&one.of.core, second),
-        ];
+        let moved = moved((&self.movers, of), &mut self.shrunk);
         overlap(moved, dim, &mut self.room)
     }
 
     /// What a look at two that are placed finds.
     fn seen(&mut self, dim: usize, of: [u32; 2]) -> Look {
-        let [one, other] = of.map(|number| &self.movers[number as usize]);
-        let [first, second] = &mut self.shrunk;
-        let moved = [
-            one.against(&other.of.core, first),
-            other.against(&one.of.core, second),
-        ];
+        let moved = moved((&self.movers, of), &mut self.shrunk);
         look(moved, dim, &mut self.room)
     }
 
-    /// Chooses the pairs that are followed, by where they were at the start of the step. `motion`: the most that any two have moved in it, m.
-    fn choose(&mut self, system: &System, motion: f64) {
+    /// Chooses the pairs that are followed of what is told, by where they were at the start of the step. `motion`: the most that any two have moved in it, m.
+    fn choose(&self, system: &System, told: &mut Told, motion: f64) {
         let boxes: Vec<Bounds> = self.movers.iter().map(Mover::reach).collect();
         let mut order: Vec<u32> = (0..boxes.len() as u32).collect();
         order.sort_by(|a, b| {
             let least = |number: u32| boxes[number as usize].min[0];
             least(*a).total_cmp(&least(*b)).then(a.cmp(b))
         });
-        let old = std::mem::take(&mut self.told.pairs);
-        let met: BTreeSet<[u32; 2]> = self
-            .told
-            .crossings
-            .iter()
-            .map(|crossing| crossing.of)
-            .collect();
+        let old = std::mem::take(&mut told.pairs);
+        let met = told.crossings.iter().map(|crossing| crossing.of);
+        let met: BTreeSet<[u32; 2]> = met.collect();
         // those that may come near in the step too
         let near = self.near + motion;
         for (place, &one) in order.iter().enumerate() {
@@ -389,7 +360,7 @@ impl Certificate {
                 let apart = boxes[one as usize].apart(&boxes[other as usize]);
                 let is_out = || {
                     self.sides.leaves_out(system, of)
-                        || self.told.overlapping.binary_search(&of).is_ok()
+                        || told.overlapping.binary_search(&of).is_ok()
                         || met.contains(&of)
                 };
                 if apart > near || is_out() {
@@ -397,12 +368,24 @@ impl Certificate {
                 }
                 let known = old.binary_search_by(|pair| pair.of.cmp(&of));
                 let left = known.map_or(apart, |k| old[k].left);
-                self.told.pairs.push(Pair { of, left });
+                told.pairs.push(Pair { of, left });
             }
         }
-        self.told.pairs.sort_by_key(|pair| pair.of);
-        self.told.left = self.near;
+        told.pairs.sort_by_key(|pair| pair.of);
+        told.left = self.near;
     }
+}
+
+/// Two that are placed, each as deep below its surface as the other allows.
+fn moved<'a>(
+    (movers, of): (&'a [Mover], [u32; 2]),
+    [first, second]: &'a mut [[Vec<[f64; 3]>; 2]; 2],
+) -> [Moved<'a>; 2] {
+    let [one, other] = of.map(|number| &movers[number as usize]);
+    [
+        one.against(&other.of.core, first),
+        other.against(&one.of.core, second),
+    ]
 }
 
 /// How far two may move towards each other in a step, m, where a smaller one would not show a contact more of what it has missed. Where they have a force

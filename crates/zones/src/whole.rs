@@ -55,6 +55,8 @@ pub struct Whole {
     report: StepReport,
     /// Who looks at whether bodies pass through each other; none before the first step.
     certificate: Option<Certificate>,
+    /// What was told until the step before, for its room.
+    told: Option<Told>,
 }
 
 /// What a run in zones goes on from.
@@ -172,6 +174,7 @@ impl Whole {
             },
             zones,
             certificate: None,
+            told: None,
             stage: (None, Costs::default()),
             system,
         }
@@ -450,14 +453,22 @@ fn common_multiple(steps: &[u32]) -> u32 {
 impl Stepper for Whole {
     /// One outer step, or one of the static stage.
     fn step(&mut self) -> Result<(), carom_dynamics::Error> {
-        let (system, before) = (&self.system, self.state.time);
         if self.certificate.is_none() {
-            self.certificate = Certificate::of(system, &self.state);
+            self.certificate = Certificate::of(&self.system, &self.state);
+            let findings = |of: &Certificate| of.findings(&self.state).told;
+            // both rooms from here on
+            self.told = self.certificate.as_ref().map(findings);
+            self.state.crossings.clone_from(&self.told);
         }
+        let before = self.state.time;
         let outcome = self.take_step();
         if let (Ok(()), Some(certificate)) = (&outcome, &mut self.certificate) {
-            certificate.look_at(&self.system, (self.state.time, &self.state), before);
-            certificate.take_attempt(&mut self.state.crossings);
+            let mut next = self.told.take().unwrap_or_default();
+            let from = (self.state.crossings.as_ref(), before);
+            let end = (self.state.time, &self.state);
+            certificate.look_at(&self.system, from, end, &mut next);
+            certificate.accept();
+            self.told = self.state.crossings.replace(next);
         }
         outcome
     }

@@ -4,6 +4,7 @@ use carom_contact::Target;
 use carom_contact::certificate::{Core, Moved};
 use carom_mesh::Bounds;
 
+use crate::state::State;
 use crate::system::{CoreOf, CoreOwner, Motion, System};
 
 type Vec3 = [f64; 3];
@@ -23,11 +24,15 @@ pub(super) struct Mover {
     pub(super) motion: Bounds,
     /// Whether the vertices are those of this step.
     is_placed: bool,
+    /// Whether frames carry nodes of it.
+    pub(super) is_carried: bool,
 }
 
 impl Mover {
-    pub(super) fn new(of: CoreOf) -> Mover {
+    pub(super) fn new(system: &System, of: CoreOf) -> Mover {
+        let mut nodes = of.core.nodes().iter();
         Mover {
+            is_carried: nodes.any(|&node| system.unknowns.carrier(node).is_some()),
             of,
             nodes: Vec::new(),
             before: Vec::new(),
@@ -69,6 +74,12 @@ impl Mover {
     /// The state that it has taken is that at the start of the next step.
     pub(super) fn accept(&mut self) {
         std::mem::swap(&mut self.nodes, &mut self.earlier);
+    }
+
+    /// A state is that at the start of the next step.
+    pub(super) fn start_from(&mut self, system: &System, state: &State) {
+        self.take(system, (state.time, &state.motion));
+        self.accept();
     }
 
     /// Places the vertices, if they are not.

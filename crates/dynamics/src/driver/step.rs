@@ -112,10 +112,9 @@ impl Driver {
                         start.get_or_insert_with(|| {
                             before.map_or_else(|| state.clone(), |state| *state)
                         });
-                        self.take_crossings();
                         self.swap_states();
                         self.attempt.state.time = to;
-                        self.start_crossings();
+                        self.certify();
                         // parts of a step are of the same stage
                         (self.attempt.state.step, self.attempt.state.control) = (taken, control);
                     }
@@ -131,8 +130,7 @@ impl Driver {
                     if let Some(start) = start.take() {
                         self.attempt.state = start;
                         self.leave_direct();
-                        self.certificate = None;
-                        self.look_from_here();
+                        self.uncertify();
                     }
                     self.report.samples.clear();
                     (done, level, cuts, was_cut) = (0, whole, false, false);
@@ -150,8 +148,7 @@ impl Driver {
                     if let Some(start) = start {
                         self.attempt.state = start;
                         self.leave_direct();
-                        self.certificate = None;
-                        self.look_from_here();
+                        self.uncertify();
                     }
                     if error.is_of_any_step() {
                         return Err(error);
@@ -196,9 +193,8 @@ impl Driver {
         self.attempt.next.control = control;
         self.attempt.next.control.compression = self.parts.stored().compression;
         self.parts.set_prepared(false);
-        self.take_crossings();
         self.swap_states();
-        self.start_crossings();
+        self.certify();
         self.attempt.show_followed(size);
         self.tell(size);
     }
@@ -223,32 +219,33 @@ impl Driver {
             return false;
         }
         let (system, state) = (self.whole(), &self.attempt.state);
-        let from = self
-            .origin
-            .as_ref()
-            .map_or(state.time, |origin| origin.time);
+        let start = self.origin.as_deref().unwrap_or(state);
+        let next = &mut self.attempt.next;
         let crosses = self.certificate.as_mut().is_some_and(|certificate| {
-            certificate.look_at(&system, (to, &self.attempt.next), from)
+            let mut told = next.crossings.take().unwrap_or_default();
+            let from = (start.crossings.as_ref(), start.time);
+            let crosses = certificate.look_at(&system, from, (to, next), &mut told);
+            next.crossings = Some(told);
+            crosses
         });
         let passed = self.contacts.sums().iter().map(|of| of.passed);
         crosses || passed.sum::<u64>() > 0
     }
 
-    /// Takes the attempt that was looked at.
-    fn take_crossings(&mut self) {
+    /// Has the certificate go on from the state, an attempt that it has looked at.
+    fn certify(&mut self) {
+        let system = self.whole();
         if let Some(certificate) = &mut self.certificate {
-            certificate.take_attempt(&mut self.attempt.next.crossings);
+            certificate.accept();
+            certificate.start_from(&system, &self.attempt.state);
         }
     }
 
-    /// Has the certificate go on from the state, where frames were turned by the steps of their nodes when it was taken.
-    fn start_crossings(&mut self) {
-        if self.attempt.state.motion.frames.is_empty() {
-            return;
-        }
+    /// Has it go on from a state before that.
+    fn uncertify(&mut self) {
         let system = self.whole();
         if let Some(certificate) = &mut self.certificate {
-            certificate.start_from(&system, &self.attempt.state);
+            certificate.go_back(&system, &self.attempt.state);
         }
     }
 
@@ -316,10 +313,7 @@ impl Attempts for Driver {
 
     fn passes(&mut self) -> bool {
         let state = &self.attempt.state;
-        let start = self
-            .origin
-            .as_ref()
-            .map_or(state.time, |origin| origin.time);
+        let start = self.origin.as_deref().unwrap_or(state).time;
         let size = self.attempt.stage.of;
         self.crosses(state.control.instant(state.step, start, size))
     }

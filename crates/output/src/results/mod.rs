@@ -55,7 +55,7 @@ mod zoning;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use carom_dynamics::{Certificate, Observer, Scope, State, StepReport, Stepper, System, Watched};
+use carom_dynamics::{Observer, Scope, State, StepReport, Stepper, System, Watched};
 
 use crate::{Error, Folder, atomic, checkpoint};
 use bolts::BoltForces;
@@ -313,7 +313,9 @@ impl Results {
                 state.exchange.largest_momentum,
             ]),
             velocities: velocities(&self.system, &state.motion.v),
-            crossings: run.certificate().map(Certificate::findings),
+            crossings: run
+                .certificate()
+                .map(|certificate| certificate.findings(state)),
             closed: (0..self.system.contacts.len()).map(forces).collect(),
             crushes: (0..self.system.contacts.len()).map(crush).collect(),
         };

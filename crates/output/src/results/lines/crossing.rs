@@ -75,7 +75,7 @@ const DEEP: &str =
 pub(super) fn of_surfaces(evidence: &Evidence) -> Finding {
     let Some(findings) = &evidence.last.crossings else {
         return Finding::Unchecked(
-            "whether surfaces pass through each other: nobody has seen whole states, as on several ranks"
+            "whether surfaces pass through each other: nobody has seen whole states, as on several ranks and before a first step"
                 .to_owned(),
         );
     };
