@@ -124,7 +124,7 @@ impl Contact {
             search.renew(places, faces, self.sight.as_ref());
         }
         if let Some(edges) = &self.edges {
-            search.lines.renew(places, edges.lines());
+            search.lines.tree.renew(places, edges.lines());
         }
     }
 

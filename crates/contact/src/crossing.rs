@@ -10,6 +10,7 @@
 use carom_elements::Kind;
 use carom_mesh::{Face, Projection};
 
+use crate::faced::Faced;
 use crate::search::faces::FaceTree;
 use crate::search::{Search, foot_on};
 use crate::sight::View;
@@ -30,6 +31,8 @@ pub(crate) struct Opposite<'a> {
     pub foot: Projection,
     /// The face of that.
     pub face: &'a Face,
+    /// The edge that it is, of a point of an edge.
+    pub faced: Option<Faced>,
 }
 
 impl Search {
@@ -48,6 +51,7 @@ impl Search {
             point: *point,
             foot,
             face,
+            faced: None,
         })
     }
 }
@@ -84,7 +88,12 @@ impl FaceTree {
         let opposite = || {
             let point = point.moved_to(found.xi[0]);
             let (foot, face) = foot_on(places, faces, item, &point.place(places));
-            Opposite { point, foot, face }
+            Opposite {
+                point,
+                foot,
+                face,
+                faced: None,
+            }
         };
         if faces[0].kind != Kind::Bar2 {
             let within = found.xi.iter().all(|xi| xi.abs() < 1.0 - AT_END);

@@ -4,7 +4,9 @@ use carom_mesh::Projection;
 
 use crate::crossing::{Opposite, between};
 use crate::edges::{Meeting, ends_of, meeting, ordered};
+use crate::faced::Faced;
 use crate::search::faces::FaceTree;
+use crate::search::lines::Lines;
 use crate::{Contact, Places};
 
 impl Contact {
@@ -12,12 +14,12 @@ impl Contact {
     /// edges in this configuration.
     pub(crate) fn opposite_edge(
         &self,
-        (places, tree): (&Places, &FaceTree),
+        (places, lines): (&Places, &Lines),
         point: usize,
         within: f64,
     ) -> Option<Opposite<'_>> {
-        let edges = self.edges.as_ref()?;
-        let met = self.edges_met((places, tree), point, within);
+        let (edges, tree) = (self.edges.as_ref()?, &lines.tree);
+        let met = self.edges_met((places, tree), (point, &|point| lines.faced(point)), within);
         let place = usize::from(self.points[point].is_second());
         let (item, found) = met[place]?;
         if self.is_told((places, tree), (point, item), within) {
@@ -36,6 +38,7 @@ impl Contact {
             point: self.points[point].moved_to(found.xi[0]),
             foot,
             face: &edges.lines[item as usize],
+            faced: Some(edges.faced(item, found.is_reversed)),
         })
     }
 
@@ -118,13 +121,22 @@ impl Contact {
     fn edges_met(
         &self,
         target: (&Places, &FaceTree),
-        point: usize,
+        (point, faced): (usize, &dyn Fn(u32) -> Option<Faced>),
         within: f64,
     ) -> [Option<(u32, Meeting)>; 2] {
-        let first = self.nearest_edge(target, point, (within, None));
-        let two = (self.edges.as_ref()).is_some_and(|edges| edges.firsts[point].1);
+        let Some(edges) = &self.edges else {
+            return [None, None];
+        };
+        let (one, two) = edges.firsts[point];
+        let stays = |item: u32| {
+            let of = |point: u32| edges.remembered(item, faced(point));
+            of(one).or_else(|| two.and_then(of))
+        };
+        let first = self.nearest_edge(target, (point, &stays), (within, None));
         let second = match &first {
-            Some((item, _)) if two => self.nearest_edge(target, point, (within, Some(*item))),
+            Some((item, _)) if two.is_some() => {
+                self.nearest_edge(target, (point, &stays), (within, Some(*item)))
+            }
             _ => None,
         };
         match (&first, &second) {
@@ -137,7 +149,7 @@ impl Contact {
     fn nearest_edge(
         &self,
         (places, tree): (&Places, &FaceTree),
-        point: usize,
+        (point, stays): (usize, &dyn Fn(u32) -> Option<bool>),
         (within, without): (f64, Option<u32>),
     ) -> Option<(u32, Meeting)> {
         let (edges, own) = (self.edges.as_ref()?, self.points[point].edge()?);
@@ -147,7 +159,7 @@ impl Contact {
         let at = |item: u32| match without == Some(item) || edges.is_beside(item, (&own.ends, view))
         {
             true => None,
-            false => meeting(&line, &edges.line(places, item), edges.depth),
+            false => meeting((&line, &edges.line(places, item)), edges.depth, stays(item)),
         };
         let measure = |item: u32| at(item).map_or(f64::INFINITY, |found| found.distance);
         // no place of the edge is farther from its middle than its half
@@ -156,7 +168,7 @@ impl Contact {
         Some((item, at(item)?))
     }
 
-    /// Whether a point of the edge that a point faces faces its edge too, and comes first: both would tell the same.
+    /// Whether a point of the edge that a point faces faces its edge too by the cones of both, and comes first: both would tell the same.
     fn is_told(
         &self,
         target: (&Places, &FaceTree),
@@ -175,7 +187,7 @@ impl Contact {
         };
         other < edges.firsts[point].0
             && self
-                .edges_met(target, other as usize, within)
+                .edges_met(target, (other as usize, &|_| None), within)
                 .iter()
                 .flatten()
                 .any(is_own)

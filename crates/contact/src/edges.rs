@@ -25,6 +25,7 @@ use carom_algebra::tensor::Vec3;
 use carom_mesh::{Face, SharpEdge};
 
 use crate::crossing::{ALONG, AT_END, between};
+use crate::faced::Faced;
 use crate::point::EdgeNodes;
 use crate::sight::View;
 use crate::{Places, Point};
@@ -47,8 +48,8 @@ pub struct Edges {
     pub(super) sides: Vec<Side>,
     /// Of the edge of each point, whether what crosses at its first and at its second end is its own; of other points neither.
     pub(super) own: Vec<[bool; 2]>,
-    /// Of each point of an edge the first point of the edge, and whether there is a second one; of others themselves.
-    pub(super) firsts: Vec<(u32, bool)>,
+    /// Of each point of an edge the first point of the edge, and the second one if there is one; of others themselves.
+    pub(super) firsts: Vec<(u32, Option<u32>)>,
     /// Penetration beyond which nothing is a contact, m.
     pub(super) depth: f64,
     /// Gap beyond which nothing is looked for, m.
@@ -60,8 +61,10 @@ pub struct Edges {
 /// What is known of an edge.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Side {
-    /// A further node of each of its faces, by system number; none of a line around which the surface is round.
-    pub(super) beside: Option<[u32; 2]>,
+    /// Of each of its faces the further nodes next to both ends, by system number; none of a line around which the surface is round.
+    pub(super) beside: Option<[[u32; 2]; 2]>,
+    /// Its number among all edges of the target.
+    number: u32,
     /// Its faces, by their numbers in the target.
     pub(super) faces: [u32; 2],
     /// The first point of the same edge, where the surface faces itself.
@@ -73,8 +76,8 @@ pub(super) struct Side {
 /// An edge where it is, m.
 pub(super) struct Line {
     pub(super) ends: [[f64; 3]; 2],
-    /// The further nodes of its faces; none of a line around which the surface is round.
-    beside: Option<[[f64; 3]; 2]>,
+    /// Of each of its faces the ways from both ends into it; none of a line around which the surface is round.
+    ways: Option<[[Vec3; 2]; 2]>,
     /// Distance of the surface, m.
     radius: f64,
     /// Whether what crosses at its ends is its own.
@@ -90,6 +93,8 @@ pub(super) struct Meeting {
     pub(super) place: [f64; 3],
     /// Unit normal out of the target.
     pub(super) normal: [f64; 3],
+    /// Whether that is -e × f.
+    pub(super) is_reversed: bool,
     /// Of the surfaces, m.
     pub(super) gap: f64,
     /// Distance of the nearest places of the lines, m: that of the gap and the radii but for rounding, and at an end for what the edges cross beside it.
@@ -114,7 +119,8 @@ impl Edges {
         let own = own.filter(|(point, _)| !point.is_second());
         let own = own.filter_map(|(point, k)| Some((ordered(point.edge()?.ends), k)));
         let own: BTreeMap<[u32; 2], u32> = own.collect();
-        let mut firsts: Vec<(u32, bool)> = (0..points.len() as u32).map(|k| (k, false)).collect();
+        let mut firsts: Vec<(u32, Option<u32>)> =
+            (0..points.len() as u32).map(|k| (k, None)).collect();
         for (k, point) in points
             .iter()
             .enumerate()
@@ -122,8 +128,8 @@ impl Edges {
         {
             let first = point.edge().and_then(|edge| own.get(&ordered(edge.ends)));
             if let Some(&first) = first {
-                firsts[k] = (first, true);
-                firsts[first as usize].1 = true;
+                firsts[k] = (first, Some(k as u32));
+                firsts[first as usize].1 = Some(k as u32);
             }
         }
         let mut own_of_points = owned(&of_points, x);
@@ -136,7 +142,8 @@ impl Edges {
         };
         let of_target = edges.iter().map(|edge| edge.length(x));
         let longest = own.keys().map(|ends| length(*ends)).chain(of_target);
-        let side = |(edge, ends): (&SharpEdge, &[bool; 2])| Side {
+        let side = |((edge, ends), number): ((&SharpEdge, &[bool; 2]), u32)| Side {
+            number,
             beside: edge.beside,
             faces: edge.faces,
             point: own.get(&ends_of(&edge.line)).copied(),
@@ -144,7 +151,7 @@ impl Edges {
         };
         (!edges.is_empty()).then(|| Edges {
             lines: edges.iter().map(|edge| edge.line).collect(),
-            sides: edges.iter().zip(&own_ends).map(side).collect(),
+            sides: edges.iter().zip(&own_ends).zip(0..).map(side).collect(),
             own: own_of_points,
             firsts,
             depth,
@@ -154,6 +161,21 @@ impl Edges {
                 .filter_map(|edge| edge.line.radius)
                 .fold(0.0, f64::max),
         })
+    }
+
+    /// An edge, and which of the two normals of both is the one.
+    pub(super) fn faced(&self, item: u32, is_reversed: bool) -> Faced {
+        Faced {
+            edge: self.sides[item as usize].number,
+            is_reversed,
+        }
+    }
+
+    /// Which normal an edge has where it stays with the edge of a point, of which this is remembered.
+    pub(super) fn remembered(&self, item: u32, faced: Option<Faced>) -> Option<bool> {
+        let number = self.sides[item as usize].number;
+        let is_reversed = faced.filter(|faced| faced.edge == number);
+        is_reversed.map(|faced| faced.is_reversed)
     }
 
     /// The edges as lines.
@@ -180,7 +202,9 @@ impl Edges {
     pub(crate) fn renumbered(&self, number: impl Fn(u32) -> u32) -> Edges {
         let lines = self.lines.iter();
         let sides = self.sides.iter().map(|side| Side {
-            beside: side.beside.map(|beside| beside.map(&number)),
+            beside: side
+                .beside
+                .map(|beside| beside.map(|nodes| nodes.map(&number))),
             ..*side
         });
         Edges {
@@ -245,10 +269,15 @@ impl Edges {
 impl Line {
     fn new(places: &Places, (nodes, radius): (EdgeNodes, f64), own: [bool; 2]) -> Line {
         let of = |nodes: [u32; 2]| nodes.map(|node| places.of(node));
+        let ends = of(nodes.ends);
+        let ways = |beside: [u32; 2]| {
+            let beside = of(beside);
+            [0, 1].map(|end| Vec3::from(beside[end]) - Vec3::from(ends[end]))
+        };
         Line {
             own,
-            ends: of(nodes.ends),
-            beside: nodes.beside.map(of),
+            ends,
+            ways: nodes.beside.map(|beside| beside.map(ways)),
             radius,
         }
     }
@@ -273,18 +302,23 @@ impl Line {
         xi.abs() < 1.0 - AT_END || across && self.own[usize::from(xi > 0.0)]
     }
 
-    /// Whether both faces are behind the plane through the edge that is normal to n, to rounding: n is in the cone of the normals of the edge. Any is
-    /// in that of a round one.
-    fn faces(&self, n: &Vec3) -> bool {
-        self.beside.iter().flatten().all(|place| {
-            let way = Vec3::from(*place) - Vec3::from(self.ends[0]);
+    /// Whether both faces leave the place at ξ of the edge behind the plane that is normal to n, to rounding: n is in the cone of the normals there. A face of
+    /// four nodes is bilinear: its way from there is between those from the ends. Any n is in the cone of a round line.
+    fn faces(&self, n: &Vec3, xi: f64) -> bool {
+        let way_at = |[first, second]: &[Vec3; 2]| (first * (1.0 - xi) + second * (1.0 + xi)) * 0.5;
+        self.ways.iter().flatten().all(|ways| {
+            let way = way_at(ways);
             n.dot(&way) <= LEVEL * way.norm()
         })
     }
 }
 
-/// Where an edge meets one of a target, if it does.
-pub(super) fn meeting(own: &Line, other: &Line, depth: f64) -> Option<Meeting> {
+/// Where an edge meets one of a target, if it does. `stays`: where they were closed, whether with the reversed normal.
+pub(super) fn meeting(
+    (own, other): (&Line, &Line),
+    depth: f64,
+    stays: Option<bool>,
+) -> Option<Meeting> {
     let nearest = between(&own.ends, &other.ends);
     let on = |line: &Line, xi: f64| Vec3::from(line.ends[0]) + line.along() * (0.5 * (1.0 + xi));
     let (x, y) = (on(own, nearest.xi[0]), on(other, nearest.xi[1]));
@@ -294,17 +328,21 @@ pub(super) fn meeting(own: &Line, other: &Line, depth: f64) -> Option<Meeting> {
         return None;
     }
     let across = own.along().cross(&other.along()).normalize();
-    let fits = [across, -across].map(|n| other.faces(&n) && own.faces(&-n));
-    let n = match fits {
-        [true, false] => across,
-        [false, true] => -across,
-        _ => return None,
+    let [xi, of_other] = nearest.xi;
+    let fits = [across, -across].map(|n| other.faces(&n, of_other) && own.faces(&-n, xi));
+    let is_reversed = match (stays, fits) {
+        (Some(is_reversed), _) => is_reversed,
+        (None, [true, false]) => false,
+        (None, [false, true]) => true,
+        (None, _) => return None,
     };
+    let n = if is_reversed { -across } else { across };
     let gap = n.dot(&way) - own.radius - other.radius;
     (gap >= -depth).then(|| Meeting {
         xi: nearest.xi,
         place: y.into(),
         normal: n.into(),
+        is_reversed,
         gap,
         distance: nearest.distance,
     })

@@ -11,6 +11,7 @@ mod contact;
 mod crossing;
 mod edge_pairs;
 mod edges;
+mod faced;
 mod initial;
 mod mortar;
 mod nearest;
@@ -30,6 +31,7 @@ pub use carom_laws as law;
 pub use carom_laws::{Friction, Law};
 pub use contact::{Contact, Integration, Sliding, Target};
 pub use edges::Edges;
+pub use faced::Faced;
 pub use initial::{Initial, Penetration};
 pub use mortar::{Basis, Mortar};
 pub use obstacle::{

@@ -20,15 +20,15 @@ enum Crossed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct EdgeNodes {
     pub(crate) ends: [u32; 2],
-    /// A further node of each of its two faces; none of the axis of a beam and of the edge of a shell.
-    pub(crate) beside: Option<[u32; 2]>,
+    /// Of each of its two faces the further nodes next to both ends; none of the axis of a beam and of the edge of a shell.
+    pub(crate) beside: Option<[[u32; 2]; 2]>,
 }
 
 /// A point of the secondary surface that carries a force.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Nodes of its face, by system number; the first `count` are used. For a node, itself; behind it `beside` others of its faces. Behind the
-    /// ends of a sharp edge one further node of each of its two faces.
+    /// ends of a sharp edge the further nodes of each of its two faces next to them.
     nodes: [u32; MAX_FACE_NODES],
     beside: usize,
     /// Values of their shape functions in the point.
@@ -134,8 +134,8 @@ impl Point {
             ..Point::crossing(&edge.line, area)
         };
         if let Some(beside) = edge.beside {
-            point.nodes[2..4].copy_from_slice(&beside);
-            point.beside = 2;
+            point.nodes[2..6].copy_from_slice(beside.as_flattened());
+            point.beside = 4;
         }
         point
     }
@@ -195,7 +195,7 @@ impl Point {
         matches!(self.crosses, Some(Crossed::Edges { .. }))
     }
 
-    /// Of a point of a sharp edge of a solid a further node of each of its two faces, which decide what it faces; none of others.
+    /// Of a point of a sharp edge of a solid the further nodes of each of its two faces, which decide what it faces; none of others.
     pub fn beside_edge(&self) -> &[u32] {
         match self.is_at_edge() {
             true => self.nodes_beside(),
@@ -205,10 +205,10 @@ impl Point {
 
     /// The nodes of its line, of a point that faces the edges of the target ([`Point::at_edge`]).
     pub(crate) fn edge(&self) -> Option<EdgeNodes> {
-        let [a, b, c, d, ..] = self.nodes;
+        let [a, b, c, d, e, f, ..] = self.nodes;
         self.is_at_edge().then(|| EdgeNodes {
             ends: [a, b],
-            beside: (self.beside == 2).then_some([c, d]),
+            beside: (self.beside == 4).then_some([[c, d], [e, f]]),
         })
     }
 

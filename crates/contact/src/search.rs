@@ -15,7 +15,9 @@ pub(crate) use self::foot::{Own, Stand, diagonal, faces_point, foot_on, is_besid
 use self::group::Group;
 use self::guess::Guesses;
 use self::kept::Kept;
+use self::lines::Lines;
 pub(crate) use self::way::{Way, is_between};
+use crate::faced::Faced;
 use crate::rest::{BLOCK, Rest};
 use crate::sight::View;
 use crate::{Places, Point, Sight};
@@ -26,16 +28,17 @@ mod foot;
 pub(crate) mod group;
 pub(crate) mod guess;
 pub(crate) mod kept;
+pub(crate) mod lines;
 mod way;
 
 /// Memory of the search of one contact, renewed at each pairing. What it holds does not matter to results, but for the points
-/// that [`Search::begin_step`] lets it hold.
+/// that [`Search::begin_step`] lets it hold, and for what it is to remember ([`Search::remember`]).
 #[derive(Debug, Default)]
 pub struct Search {
     /// The faces and their boxes.
     pub(crate) faces: FaceTree,
-    /// Sharp edges of the target and their boxes ([`Edges`](crate::Edges)).
-    pub(crate) lines: FaceTree,
+    /// Sharp edges of the target ([`Edges`](crate::Edges)).
+    pub(crate) lines: Lines,
     /// The memory of each query since the renewal, in their order.
     kept: Vec<Kept>,
     next: usize,
@@ -85,7 +88,7 @@ impl Search {
             let (moved, shift) = (travelled - before, [0, 1, 2].map(|i| shift[i] - from[i]));
             let mut serves = self.faces.has_moved(faces.len(), moved, shift);
             if !lines.is_empty() {
-                serves &= self.lines.has_moved(lines.len(), moved, shift);
+                serves &= self.lines.tree.has_moved(lines.len(), moved, shift);
             }
             if serves {
                 return;
@@ -94,7 +97,7 @@ impl Search {
         self.rested = Some((travelled, shift));
         self.faces.take_boxes(places, faces);
         if !lines.is_empty() {
-            self.lines.take_boxes(places, lines);
+            self.lines.tree.take_boxes(places, lines);
         }
     }
 
@@ -129,12 +132,17 @@ impl Search {
     pub fn bytes(&self) -> usize {
         let lists = self.kept.iter().map(Kept::bytes);
         let groups = self.groups.iter().map(Group::bytes);
-        self.faces.bytes() + self.lines.bytes() + lists.sum::<usize>() + groups.sum::<usize>()
+        self.faces.bytes() + self.lines.tree.bytes() + lists.sum::<usize>() + groups.sum::<usize>()
     }
 
     /// Projections on faces since the last renewal: what the search cost.
     pub fn projections(&self) -> usize {
         self.scratch.projections
+    }
+
+    /// Remembers the edges that points of edges were closed at, by ascending numbers in the contact, until the next call.
+    pub fn remember(&mut self, faced: impl Iterator<Item = (u32, Faced)>) {
+        self.lines.remember(faced);
     }
 
     /// Begins a step of several pairings. In a fold between two faces whose normals push a point each towards the other it

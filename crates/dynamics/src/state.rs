@@ -1,5 +1,8 @@
 //! Everything that influences the next step or the results: the state is the checkpoint.
 
+use std::ops::Range;
+
+use carom_contact::Faced;
 use carom_contact::law::Status;
 use carom_system::{Motion, System};
 use serde::{Deserialize, Serialize};
@@ -109,6 +112,8 @@ pub struct InterfaceState {
     /// Penetration at which the contact of a rigid body landed, m, until it is open: the part of a step by which the impact
     /// is early or late. Points count as closed from there on.
     pub landed: Vec<f64>,
+    /// Points of edges that are closed, ascending, and the edges that they are closed at.
+    pub faced: Vec<(u32, Faced)>,
 }
 
 impl InterfaceState {
@@ -128,6 +133,8 @@ impl InterfaceState {
             && self.status.len() == points
             && self.watched.len() == points
             && [0, points].contains(&self.friction.len())
+            && self.faced.is_sorted_by(|one, other| one.0 < other.0)
+            && (self.faced.last()).is_none_or(|(point, _)| (*point as usize) < points)
     }
 
     /// Becomes a copy, without new memory.
@@ -143,6 +150,7 @@ impl InterfaceState {
         self.flight.clone_from(&before.flight);
         self.crush.clone_from(&before.crush);
         self.landed.clone_from(&before.landed);
+        self.faced.clone_from(&before.faced);
     }
 
     /// Becomes a copy at some points, and already is one at the others, but for the time without force.
@@ -152,6 +160,7 @@ impl InterfaceState {
         points: impl Iterator<Item = usize>,
     ) {
         self.friction.resize(before.friction.len(), [0.0; 2]);
+        self.faced.clone_from(&before.faced);
         for point in points {
             self.take_point(point, (before, point));
         }
@@ -171,6 +180,39 @@ impl InterfaceState {
         self.watched[to] = other.watched[from];
         self.crush[to] = other.crush[from];
         self.landed[to] = other.landed[from];
+        self.set_faced(to, other.faced(from));
+    }
+
+    /// The edge that a point is closed at, if it is a point of an edge.
+    pub fn faced(&self, point: usize) -> Option<Faced> {
+        self.faced[self.first_faced(point)..]
+            .first()
+            .filter(|(of, _)| *of as usize == point)
+            .map(|(_, faced)| *faced)
+    }
+
+    /// Those of the points of a contact, by their numbers in it.
+    pub fn faced_of(&self, points: Range<usize>) -> impl Iterator<Item = (u32, Faced)> + '_ {
+        let own = self.first_faced(points.start)..self.first_faced(points.end);
+        let number = move |&(point, faced): &(u32, Faced)| (point - points.start as u32, faced);
+        self.faced[own].iter().map(number)
+    }
+
+    /// Sets the edge that a point is closed at.
+    pub fn set_faced(&mut self, point: usize, faced: Option<Faced>) {
+        let place = self.first_faced(point);
+        let is_there = self.faced.get(place).map(|(of, _)| *of as usize) == Some(point);
+        match (faced, is_there) {
+            (Some(faced), true) => self.faced[place].1 = faced,
+            (Some(faced), false) => self.faced.insert(place, (point as u32, faced)),
+            (None, true) => drop(self.faced.remove(place)),
+            (None, false) => (),
+        }
+    }
+
+    /// The place of the first point that is not before one.
+    fn first_faced(&self, point: usize) -> usize {
+        self.faced.partition_point(|(of, _)| (*of as usize) < point)
     }
 
     /// Takes the force of a point.
@@ -320,6 +362,7 @@ pub(crate) fn state_without_motion(system: &System) -> State {
             flight: vec![f64::INFINITY; points],
             crush: vec![0.0; points],
             landed: vec![0.0; points],
+            faced: Vec::new(),
         },
         forces: StepForces::default(),
         links: Links::default(),

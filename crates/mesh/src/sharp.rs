@@ -12,8 +12,9 @@ use crate::{Face, Mesh, Rim, Surface, face_nodes};
 pub struct SharpEdge {
     /// The edge as a line of two nodes, which bounds the cell of the first of its faces.
     pub line: Face,
-    /// A further node of each of its faces; none of a line around which the surface is round.
-    pub beside: Option<[u32; 2]>,
+    /// Of each of its faces the further nodes next to its first and to its second end, of a triangle the same one; none of a line around which the
+    /// surface is round.
+    pub beside: Option<[[u32; 2]; 2]>,
     /// Its faces, by their places in the surface.
     pub faces: [u32; 2],
 }
@@ -23,7 +24,9 @@ impl SharpEdge {
     pub fn renumbered(self, number: impl Fn(u32) -> u32) -> SharpEdge {
         SharpEdge {
             line: self.line.renumbered(&number),
-            beside: self.beside.map(|beside| beside.map(&number)),
+            beside: self
+                .beside
+                .map(|beside| beside.map(|nodes| nodes.map(&number))),
             ..self
         }
     }
@@ -40,8 +43,8 @@ struct Side {
     face: u32,
     /// Ends of the edge, in the order of the face.
     ends: [u32; 2],
-    /// The node of the face after them.
-    beside: u32,
+    /// The nodes of the face before and after them.
+    beside: [u32; 2],
 }
 
 impl Surface {
@@ -60,7 +63,7 @@ impl Surface {
                 of_edge.entry(key).or_default().push(Side {
                     face: number,
                     ends,
-                    beside: at(k + 2),
+                    beside: [at(k + nodes.len() - 1), at(k + 2)],
                 });
             }
         }
@@ -100,13 +103,18 @@ impl Surface {
         let place = |node: u32| mesh.nodes[node as usize];
         // each face lies behind the plane of the other
         let is_behind = |k: usize| {
-            let (from, to) = (place(sides[k].ends[0]), place(sides[1 - k].beside));
+            let (from, to) = (place(sides[k].ends[0]), place(sides[1 - k].beside[1]));
             dot(&normals[k], &[0, 1, 2].map(|i| to[i] - from[i])) < 0.0
         };
         dot(&normals[0], &normals[1]) < FOLD && is_behind(0) && is_behind(1)
     }
 
     fn sharp_edge(&self, [one, other]: [&Side; 2]) -> SharpEdge {
+        let [first, second] = other.beside;
+        let of_other = match other.ends == one.ends {
+            true => [first, second],
+            false => [second, first],
+        };
         SharpEdge {
             line: Face {
                 kind: Kind::Bar2,
@@ -116,7 +124,7 @@ impl Surface {
                 radius: None,
                 rim: Rim::default(),
             },
-            beside: Some([one.beside, other.beside]),
+            beside: Some([one.beside, of_other]),
             faces: [one.face, other.face],
         }
     }
@@ -140,7 +148,15 @@ mod tests {
                 let nodes = surface.faces[*face as usize].corners();
                 let ends = edge.line.corners();
                 assert!(ends.iter().all(|node| nodes.contains(node)));
-                assert!(nodes.contains(&beside) && !ends.contains(&beside));
+                for (end, node) in ends.iter().zip(beside) {
+                    assert!(nodes.contains(&node) && !ends.contains(&node));
+                    let apart = |axis: usize| {
+                        mesh.nodes[*end as usize][axis] - mesh.nodes[node as usize][axis]
+                    };
+                    let length = (0..3).map(|axis| apart(axis).powi(2)).sum::<f64>().sqrt();
+                    // a side of the face, not its diagonal
+                    assert!((length - 1.0).abs() < 1e-15);
+                }
             }
         }
     }

@@ -142,7 +142,8 @@ impl CrossZoneContacts {
     /// Pairs and lists the candidates of an outer step of `dt` from `time` (both s), with the forces of the last one.
     pub(crate) fn begin(&mut self, drivers: &[Driver], (time, dt): (f64, f64)) {
         self.geometry.gather_start(drivers);
-        self.geometry.pair(&self.system, (time, dt));
+        self.geometry
+            .pair((&self.system, &self.state.interface), (time, dt));
         self.now.fill([0.0; 2]);
         let rigid = &self.compliance.rigid;
         let of = (&*self.system, &self.geometry, rigid);

@@ -48,7 +48,7 @@ impl Contact {
                 search.faces.see(view, places);
             }
         }
-        let (tree, lines) = (&search.faces, &search.lines);
+        let (tree, lines) = (&search.faces, &search.lines.tree);
         let of_point = |&point: &u32| {
             let k = point as usize;
             if self.points[k].is_at_edge() {

@@ -17,6 +17,7 @@ use crate::rest::{BLOCK, Rest};
 use crate::search::faces::{FaceTree, Question};
 use crate::search::group::Group;
 use crate::search::kept::Kept;
+use crate::search::lines::Lines;
 use crate::search::{Stand, Way, faces_point, foot_on, is_between};
 use crate::{Contact, Places, Search, Target};
 
@@ -83,7 +84,7 @@ impl Contact {
     fn look(
         &self,
         (places, near, reach): (&Places, &Near, Reach),
-        (tree, lines): (&FaceTree, &FaceTree),
+        (tree, lines): (&FaceTree, &Lines),
         (number, span): (u32, [f64; 2]),
         group: &mut Group,
     ) -> Look {
@@ -197,7 +198,7 @@ impl Contact {
     /// What the edge of a point faces, and how far both sides may come before it is looked at again, m.
     fn look_at_edge(
         &self,
-        target: (&Places, &FaceTree),
+        (places, lines): (&Places, &Lines),
         reach: Reach,
         k: usize,
     ) -> (Option<Stencil>, f64) {
@@ -209,14 +210,16 @@ impl Contact {
         let limit = limit.min(edges.reach());
         let most = (self.limit(k, reach.most) + wide).max(2.0 * limit);
         // whether edges meet may change with any motion, their distance may not
-        let apart = self.distance_of_edges(target, k, most).unwrap_or(most);
+        let apart = self
+            .distance_of_edges((places, &lines.tree), k, most)
+            .unwrap_or(most);
         if apart > limit {
             return (None, 0.5 * (apart - limit));
         }
-        let found = self.opposite_edge(target, k, limit);
+        let found = self.opposite_edge((places, lines), k, limit);
         let is_near = |found: &Opposite| found.foot.gap + self.offset(k) <= reach.near;
         let near = found.filter(is_near);
-        let stencil = near.map(|found| Stencil::opposite_to(target.0, &found));
+        let stencil = near.map(|found| Stencil::opposite_to(places, &found));
         (stencil, 0.0)
     }
 

@@ -33,6 +33,7 @@ pub use self::near::{Near, OwnPart, Step};
 use self::share::{Quadrature, Share};
 use self::stencil::Stencil;
 pub use self::tie::Tie;
+use crate::faced::Faced;
 use crate::{Places, Rows};
 
 /// Contact points of a list of contacts at one configuration, with the derivatives that Newton's method and friction
@@ -172,6 +173,12 @@ impl Pairing {
             }
             last = Some(stencil);
         }
+    }
+
+    /// The edge that a point of an edge faces; none of others.
+    pub fn faced(&self, point: usize) -> Option<Faced> {
+        let (stencil, _) = self.terms(point).first()?;
+        self.stencils[*stencil as usize].faced
     }
 
     /// Least gap of the places that a point is the mean of, m, offsets left out; infinite of a point that faces nothing.

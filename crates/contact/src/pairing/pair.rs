@@ -44,7 +44,9 @@ impl Contact {
             }
             Target::Surface(faces) => {
                 self.each_opposite((places, faces), search, |k, found| match found {
-                    Some(Opposite { point, foot, face }) => {
+                    Some(Opposite {
+                        point, foot, face, ..
+                    }) => {
                         rows.push(foot.gap + offset(k), foot.normal);
                         rows.set_resultant(point.on_secondary(foot.normal));
                         add_row(places, &point, &foot, face, rows);

@@ -9,6 +9,7 @@ use super::curvature::Shape;
 use super::foothold::Foothold;
 use super::round;
 use crate::crossing::Opposite;
+use crate::faced::Faced;
 use crate::nearest::Moves;
 use crate::{Obstacle, Places, Point, Rows};
 
@@ -23,6 +24,8 @@ pub(crate) struct Stencil {
     first: [u32; 2 * NODES],
     /// Whether other nodes carry some of them.
     pub(super) carried: bool,
+    /// The edge at the other end, of a point of an edge.
+    pub(super) faced: Option<Faced>,
 }
 
 #[derive(Clone, Debug)]
@@ -48,7 +51,10 @@ impl Stencil {
     /// The stencil of a point and what is opposite to it on a surface.
     pub fn opposite_to(places: &Places, found: &Opposite) -> Stencil {
         let x = found.point.place(places);
-        Stencil::on_face(places, &found.point, &x, &found.foot, found.face)
+        Stencil {
+            faced: found.faced,
+            ..Stencil::on_face(places, &found.point, &x, &found.foot, found.face)
+        }
     }
 
     /// The stencil of a point against an obstacle, `None` where it faces nothing. `span`: [`Pairing::span`](super::Pairing::span).
@@ -71,6 +77,7 @@ impl Stencil {
             normal: found.normal,
             first: [0; 2 * NODES],
             carried: false,
+            faced: None,
             foot: Foot::Obstacle {
                 hessian: found.hessian,
                 moves: Moves::of(&point, places),
@@ -97,6 +104,7 @@ impl Stencil {
             normal: foot.normal,
             first: [0; 2 * NODES],
             carried: false,
+            faced: None,
             foot: Foot::Face(foothold),
         };
         stencil.numbered(places)

@@ -183,6 +183,49 @@ fn cones_let_out_what_is_behind() {
     assert!((below.rows.normal(facing[0])[2] - 1.0).abs() < 1e-15);
 }
 
+/// Where the sides of a bar have gone above its edge, another bar in it is before none of its faces. It is seen where it is remembered, with the gap along the same
+/// normal, and no farther than the ends of the edges.
+#[test]
+fn an_edge_that_is_closed_stays_with_the_other_while_faces_turn() {
+    let bars = Bars::new(0.05);
+    let contact = bars.contact();
+    let closed = bars.paired_after(&contact, 0.08);
+    let faced: Vec<_> = (0..closed.len() as u32)
+        .filter_map(|point| Some((point, closed.faced(point as usize)?)))
+        .collect();
+    assert_eq!(faced.len(), 1);
+    let after = |down: f64, along: f64, remembers: bool| {
+        let mut u = bars.down(down);
+        for (node, x) in bars.mesh.nodes.iter().enumerate() {
+            let is_side = x[2] < -0.5 * HALF && x[2] > -1.5 * HALF;
+            if node < bars.mesh.nodes.len() / 2 {
+                u[3 * node] = along;
+                u[3 * node + 2] = if is_side { 1.5 * HALF } else { 0.0 };
+            }
+        }
+        let (unknowns, mut search) = (bars.unknowns(), Search::default());
+        if remembers {
+            search.remember(faced.iter().copied());
+        }
+        let mut pairing = Pairing::default();
+        pairing.clear();
+        contact.pair_fully(&bars.places(&unknowns, &u), &mut search, &mut pairing);
+        // the edges at the sides may touch too
+        let point = faced[0].0 as usize;
+        let gap = pairing.rows.gap(point);
+        gap.is_finite()
+            .then(|| (gap, pairing.rows.normal(point)[2]))
+    };
+    assert_eq!(after(0.08, 0.0, false), None);
+    for down in [0.03, 0.08, 0.12] {
+        let (gap, up) = after(down, 0.0, true).unwrap();
+        // rounding of coordinates below 2 m
+        assert!((gap - (0.05 - down)).abs() < 1e-15, "{gap}");
+        assert!((up + 1.0).abs() < 1e-15, "{up}");
+    }
+    assert_eq!(after(0.08, 2.0, true), None);
+}
+
 /// An edge as the axis of a beam of a radius, m.
 fn axis(edge: &SharpEdge, radius: f64) -> SharpEdge {
     let mut axis = SharpEdge {

@@ -139,7 +139,7 @@ impl Driver {
         }
         self.evaluate(true)?;
         self.attempt.vectors.ahead.clear();
-        self.contacts.begin_search();
+        self.contacts.begin_search(&self.attempt);
         self.contacts.begin_far(&self.attempt);
         self.contacts.forget_closings();
         self.contacts.pair(&mut self.attempt, true);

@@ -1,7 +1,7 @@
 //! What the contact points of all ranks did in a step, and what the first rank is given of them.
 
-use carom_contact::Point;
 use carom_contact::law::Status;
+use carom_contact::{Faced, Point};
 use carom_ranks::{Message, Ranks};
 
 use super::halo::{Halo, With, by_rank};
@@ -14,7 +14,7 @@ use crate::system::System;
 
 /// Numbers of a point that the first rank is given where somebody looks at points, and where the state is to be whole.
 const SEEN: usize = 5;
-pub(super) const WHOLE: usize = 14;
+pub(super) const WHOLE: usize = 15;
 
 /// The points of contacts that the first rank does not have: by rank on the first one, and on another its own.
 #[derive(Debug, Default)]
@@ -310,6 +310,7 @@ pub(super) fn of_point(
         flight,
         crush,
         landed,
+        faced,
     } = &mut state.interface;
     let mut slid = friction.get(point).copied().unwrap_or_default();
     let mut number = number_of(status[point]);
@@ -332,6 +333,8 @@ pub(super) fn of_point(
         Waiting::Hasty => 2.0,
         Waiting::Chattering => 3.0,
     };
+    let place = faced.binary_search_by_key(&point, |(of, _)| *of as usize);
+    let mut edge = number_of_faced(place.ok().map(|place| faced[place].1));
     let rest = [
         &mut carried[point],
         &mut rate[point],
@@ -341,16 +344,34 @@ pub(super) fn of_point(
         &mut landed[point],
         &mut state.records.opened[point],
         &mut is_watched,
+        &mut edge,
         &mut waits,
     ];
     rest.into_iter().for_each(visit);
     watched[point] = is_watched != 0.0;
+    state.interface.set_faced(point, faced_of(edge));
     state.records.waiting[point] = match waits {
         0.0 => Waiting::Nothing,
         1.0 => Waiting::Due,
         2.0 => Waiting::Hasty,
         _ => Waiting::Chattering,
     };
+}
+
+/// An edge that a point is closed at as a number: zero of none.
+fn number_of_faced(faced: Option<Faced>) -> f64 {
+    faced.map_or(0.0, |faced| {
+        f64::from(faced.edge) * 2.0 + 1.0 + f64::from(faced.is_reversed)
+    })
+}
+
+/// The reverse.
+fn faced_of(number: f64) -> Option<Faced> {
+    let from_zero = (number as u64).checked_sub(1)?;
+    Some(Faced {
+        edge: (from_zero / 2) as u32,
+        is_reversed: from_zero % 2 == 1,
+    })
 }
 
 /// A status as a number: pieces from 3 on.

@@ -53,6 +53,9 @@ impl CrossZoneContacts {
                 let interface = &mut self.state.interface;
                 interface.gap[point] = rows.gap(point) + way;
                 interface.rate[point] = rows.product(point, rate);
+                let is_closed = interface.force[point] != 0.0 || interface.gap[point] <= 0.0;
+                let faced = geometry.pairing.faced(point).filter(|_| is_closed);
+                interface.set_faced(point, faced);
                 if interface.force[point] != 0.0 {
                     let (crush, gap) = (&mut interface.crush[point], interface.gap[point]);
                     *crush = contact.law.crushed(*crush, gap);
@@ -126,7 +129,8 @@ impl CrossZoneContacts {
             .for_each(|pushed| pushed.fill(0.0));
         self.state.records = Records::of(&self.system);
         self.geometry.gather_start(drivers);
-        self.geometry.pair(&self.system, (0.0, 0.0));
+        self.geometry
+            .pair((&self.system, &self.state.interface), (0.0, 0.0));
         let (rows, interface) = (&self.geometry.pairing.rows, &mut self.state.interface);
         for point in 0..self.system.points() {
             interface.gap[point] = rows.gap(point);

@@ -70,7 +70,11 @@ impl Geometry {
     }
 
     /// Pairs the points for an outer step of `dt` from `time` (both s); 0 for the present instant.
-    pub(super) fn pair(&mut self, system: &System, (time, dt): (f64, f64)) {
+    pub(super) fn pair(
+        &mut self,
+        (system, interface): (&System, &InterfaceState),
+        (time, dt): (f64, f64),
+    ) {
         self.pairing.clear();
         self.pairing.span = [0.0; 2];
         for (k, contact) in system.contacts.iter().enumerate() {
@@ -80,6 +84,7 @@ impl Geometry {
                 *place = u[i] + part * v[i];
             }
             let places = system.places(time + part, &self.place, &self.frames);
+            self.search[k].remember(interface.faced_of(system.points_of(k)));
             let kept = (&mut self.search[k], &mut self.initial[k]);
             append(contact, &places, &mut self.still, kept, &mut self.pairing);
         }

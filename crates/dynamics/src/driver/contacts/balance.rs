@@ -25,6 +25,7 @@ impl Contacts {
             }
         }
         interface.count_flights(&attempt.state.interface.flight, attempt.dt);
+        interface.faced.clear();
         let has_rate = attempt
             .maps
             .all()
@@ -57,6 +58,12 @@ impl Contacts {
                 interface.gap[point] = gap;
                 interface.rate[point] = rate;
                 interface.opening[point] = opening;
+                if interface.force[point] != 0.0 || gap <= 0.0 {
+                    let faced = self.pairing.faced(point);
+                    interface
+                        .faced
+                        .extend(faced.map(|faced| (point as u32, faced)));
+                }
             }
         }
         self.note_landings(attempt);

@@ -218,8 +218,17 @@ impl Contacts {
     }
 
     /// Begins the search of a step.
-    pub(crate) fn begin_search(&mut self) {
+    pub(crate) fn begin_search(&mut self, attempt: &Attempt) {
         self.search.iter_mut().for_each(Search::begin_step);
+        self.remember(attempt);
+    }
+
+    /// Has the searches remember the edges that points are closed at.
+    pub(super) fn remember(&mut self, attempt: &Attempt) {
+        let interface = &attempt.state.interface;
+        for (number, search) in self.search.iter_mut().enumerate() {
+            search.remember(interface.faced_of(attempt.system.points_of(number)));
+        }
     }
 
     /// Ends solves early where this is set.

@@ -39,6 +39,7 @@ impl Contacts {
         let system = Arc::clone(&attempt.system);
         let mut pairing = std::mem::take(&mut self.pairing);
         self.rows_stand = false;
+        self.remember(attempt);
         let begins = self.active.begins();
         if begins {
             let contacts = system.contacts.iter().map(|pair| &pair.contact);

@@ -250,6 +250,7 @@ impl Contacts {
         self.pairing.span = [0.0; 2];
         attempt.vectors.end.clear();
         attempt.vectors.place.clone_from(&attempt.state.motion.u);
+        self.remember(attempt);
         self.begin_far(attempt);
         for contact in 0..attempt.system.contacts.len() {
             self.append(attempt, contact, attempt.state.time);
