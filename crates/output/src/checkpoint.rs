@@ -1,6 +1,6 @@
 //! Checkpoints: all that a run goes on from, in a ring of files.
 //!
-//! A checkpoint is one file: a line `carom-checkpoint 20 <checksum>`, a line of JSON ([`Head`]), then the parts that the head
+//! A checkpoint is one file: a line `carom-checkpoint 21 <checksum>`, a line of JSON ([`Head`]), then the parts that the head
 //! counts: the text that tells which case it is of, the state of the run, what it has cost, and what the results have gathered.
 //! The checksum is that of everything after the first line. The newest one is `last.state`, those before it `earlier-1.state`,
 //! `earlier-2.state`, .... A new one is forced to the disk before the others move by one place, and appears by a rename.
@@ -17,7 +17,7 @@ use crate::{Error, atomic};
 pub const FOLDER: &str = "checkpoints";
 
 /// First word and version of the format. Raise the version when the content of a state or of what results gather changes.
-const FORMAT: &str = "carom-checkpoint 20";
+const FORMAT: &str = "carom-checkpoint 21";
 
 /// Version of the program: another one may compute other bits.
 const PROGRAM: &str = env!("CARGO_PKG_VERSION");
