@@ -8,9 +8,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::body_energies::BodyEnergy;
 use crate::records::ContactRecord;
 use crate::sum::Sum;
 use crate::system::System;
+use carom_bodies::Deleted;
 use carom_system::Assembly;
 
 /// Part of the kinetic energy in the frame of the model of which another frame leaves rounding: some 1e-15 in a step, times the
@@ -26,6 +28,8 @@ pub struct AssemblyEnergies {
     pub largest: f64,
     /// Whether the scheme of a zone balances an energy with a lag or a memory, which is known of the whole alone.
     pub of_whole_alone: bool,
+    /// What strain and hardening store in each body, J; empty before the dynamics, of a linear system, and of zones that step apart together.
+    stored: Vec<f64>,
 }
 
 /// Energy of one assembly.
@@ -67,6 +71,17 @@ struct AssemblyMotion {
     of_scheme: f64,
     /// Momentum, N s.
     momentum: [f64; 3],
+}
+
+/// What materials took in a step, of all assemblies that are balanced together ([`Assembly::balanced_with`]).
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Taken {
+    /// By the energies of the bodies, J.
+    pub(crate) exact: f64,
+    /// Work of the internal forces, J.
+    work: f64,
+    /// Sum of the absolute works on the connected parts, J.
+    size: f64,
 }
 
 /// A connected part at the end of a step.
@@ -183,7 +198,27 @@ impl AssemblyEnergies {
     /// Makes this that of the state before the step.
     pub(crate) fn follow(&mut self, before: &AssemblyEnergies) {
         self.all.clone_from(&before.all);
+        self.stored.clone_from(&before.stored);
         (self.largest, self.of_whole_alone) = (before.largest, before.of_whole_alone);
+    }
+
+    /// What the materials of each body took from the state on to energies at the end of a step, J.
+    pub(crate) fn taken<'a>(&'a self, bodies: &'a [BodyEnergy]) -> impl Iterator<Item = f64> + 'a {
+        let ends = self.stored.iter().zip(bodies);
+        ends.map(|(before, now)| now.stored - before + now.dissipated)
+    }
+
+    /// Keeps the energies of the bodies for the next step.
+    pub(crate) fn store(&mut self, bodies: &[BodyEnergy]) {
+        self.stored.clear();
+        self.stored.extend(bodies.iter().map(|body| body.stored));
+    }
+
+    /// Takes from a body what its deleted elements had stored: its materials took that before.
+    pub(crate) fn delete(&mut self, body: usize, deleted: &Deleted) {
+        if let Some(stored) = self.stored.get_mut(body) {
+            *stored -= deleted.stored.strain + deleted.stored.hardening;
+        }
     }
 
     /// Adds the end of a step. `parts`: each connected part; `obstacles`: work in the step of the obstacle of each contact, J.
@@ -250,6 +285,7 @@ impl AssemblyEnergies {
     /// Whether they are of this system; none before the dynamics.
     pub(crate) fn are_of(&self, system: &System) -> bool {
         [0, system.assemblies.all.len()].contains(&self.all.len())
+            && [0, system.bodies.len()].contains(&self.stored.len())
     }
 }
 
@@ -272,21 +308,24 @@ impl PartMotion {
     }
 }
 
-/// Makes the works that the internal forces took add up to what the materials took, `exact` (J). The mean of the forces at the start and the end of a
-/// step times the way is that energy where forces are linear in the way; at finite strain and rotation it differs by the third power of the step.
-/// Each part has as much of the difference as it has of the works.
-pub(crate) fn balance_taken(parts: &mut [PartMotion], exact: f64) {
-    let (mut taken, mut size) = (0.0, 0.0);
-    for part in &*parts {
-        taken += part.taken;
-        size += part.taken.abs();
+/// Makes the works that the internal forces took add up to what the materials took, in each group of assemblies that are balanced together. The mean of the forces at the start
+/// and the end of a step times the way is that energy where forces are linear in the way; at finite strain and rotation it differs by the third power of the step. Each part has
+/// as much of the difference as it has of the works of its group. `groups`: with their exact energies alone; `of_part`: the group of a part.
+pub(crate) fn balance_taken(
+    parts: &mut [PartMotion],
+    groups: &mut [Taken],
+    of_part: impl Fn(usize) -> usize,
+) {
+    for (number, part) in parts.iter().enumerate() {
+        let group = &mut groups[of_part(number)];
+        group.work += part.taken;
+        group.size += part.taken.abs();
     }
-    if size == 0.0 {
-        return;
-    }
-    let missing = (exact - taken) / size;
-    for part in parts {
-        part.taken += missing * part.taken.abs();
+    for (number, part) in parts.iter_mut().enumerate() {
+        let group = &groups[of_part(number)];
+        if group.size != 0.0 {
+            part.taken += (group.exact - group.work) / group.size * part.taken.abs();
+        }
     }
 }
 
@@ -295,18 +334,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn works_add_up_to_what_materials_took() {
+    fn works_add_up_to_what_the_materials_of_those_balanced_together_took() {
         let part = |taken: f64| PartMotion {
             taken,
             ..PartMotion::default()
         };
-        let mut parts = [part(2.0), part(-1.0), part(0.0)];
-        balance_taken(&mut parts, 1.3);
-        let taken = parts.map(|part| part.taken);
-        // 0.3 J is missing, of 3 J
-        let expected = [2.2, -0.9, 0.0];
-        for (taken, expected) in taken.iter().zip(&expected) {
-            assert!((taken - expected).abs() < 1e-15, "{taken} J");
+        let mut parts = [2.0, 5.0, -1.0, 0.0].map(part);
+        let mut groups = [1.3, 4.0, 7.0].map(|exact| Taken {
+            exact,
+            ..Taken::default()
+        });
+        balance_taken(&mut parts, &mut groups, |part| [0, 1, 0, 2][part]);
+        // of the first and the third 0.3 J is missing, of 3 J; the second has all of its own; the last has no work that could be wrong
+        let expected = [2.2, 4.0, -0.9, 0.0];
+        for (part, expected) in parts.iter().zip(&expected) {
+            assert!((part.taken - expected).abs() < 1e-15, "{} J", part.taken);
         }
     }
 }

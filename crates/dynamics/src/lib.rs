@@ -7,6 +7,7 @@
 mod assembly_energy;
 mod at_rows;
 mod blocks;
+mod body_energies;
 mod certificate;
 mod chatter;
 mod choice;

@@ -17,6 +17,8 @@ pub struct Assembly {
     pub mass: [f64; 3],
     /// Velocity of its frame V, m/s, constant.
     pub velocity: [f64; 3],
+    /// The first assembly of those whose materials are told of together: springs of one name are in all of them, and have one energy. In general it is its own number.
+    pub balanced_with: usize,
 }
 
 impl Assembly {

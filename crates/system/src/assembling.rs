@@ -1,6 +1,7 @@
 //! Finds the assemblies of a system, and what holds them.
 
 use carom_algebra::unknowns::Kind;
+use carom_bodies::Body;
 use carom_contact::{Obstacle, Shape, Target};
 
 use crate::assemblies::{Assemblies, Assembly};
@@ -22,6 +23,7 @@ impl Assemblies {
                 assemblies.all[assembly].contacts.push(number);
             }
         }
+        balance_together(system, &mut assemblies);
         let mut by_axis = [0, 1, 2].map(|_| vec![0.0; system.unknowns()]);
         let mut momentum = vec![0.0; system.unknowns()];
         for (axis, mass) in by_axis.iter_mut().enumerate() {
@@ -58,24 +60,45 @@ impl Assemblies {
     }
 }
 
+/// Joins what has these numbers to that with the least of them. `first`: the least number of those that each is joined with.
+fn join(first: &mut [usize], numbers: &mut dyn Iterator<Item = usize>) {
+    let Some(one) = numbers.next() else { return };
+    for other in numbers {
+        let [one, other] = [first[one], first[other]];
+        let (low, high) = (one.min(other), one.max(other));
+        if low == high {
+            continue;
+        }
+        for first in &mut *first {
+            if *first == high {
+                *first = low;
+            }
+        }
+    }
+}
+
+/// Finds the assemblies that springs of one name are in. All other bodies are in one part, however many pieces they have.
+fn balance_together(system: &System, assemblies: &mut Assemblies) {
+    let mut first: Vec<usize> = (0..assemblies.all.len()).collect();
+    let is_spring = |body: &&Body| body.as_discrete().is_some() && !body.balances_itself();
+    for body in system.bodies.iter().filter(is_spring) {
+        let mut own = Vec::new();
+        body.each_element(&mut |nodes| {
+            let node = system.unknowns.moved_by(nodes[0]);
+            let part = system.part_of(system.unknowns.first(node));
+            own.push(assemblies.of_part[part]);
+        });
+        join(&mut first, &mut own.into_iter());
+    }
+    for (assembly, first) in assemblies.all.iter_mut().zip(first) {
+        assembly.balanced_with = first;
+    }
+}
+
 /// The parts that contacts and links join, without masses and frames.
 fn joined(system: &System, links: &[ModelLink]) -> Assemblies {
     let mut first: Vec<usize> = (0..system.parts.len()).collect();
-    let mut join = |parts: &mut dyn Iterator<Item = usize>| {
-        let Some(one) = parts.next() else { return };
-        for other in parts {
-            let [one, other] = [first[one], first[other]];
-            let (low, high) = (one.min(other), one.max(other));
-            if low == high {
-                continue;
-            }
-            for first in &mut first {
-                if *first == high {
-                    *first = low;
-                }
-            }
-        }
-    };
+    let mut join = |parts: &mut dyn Iterator<Item = usize>| join(&mut first, parts);
     for contact in &system.contacts {
         join(&mut contact.bodies.iter().map(|&body| system.part_of_body[body]));
     }

@@ -41,7 +41,9 @@ impl Driver {
         let mut motions = std::mem::take(&mut self.balances.works_mut().motions);
         motions.clear();
         motions.extend((0..direct.parts.len()).map(part));
-        self.balances.add_to_assemblies(&mut self.attempt, motions);
+        let bodies = self.parts.energy_of_bodies();
+        self.balances
+            .add_to_assemblies(&mut self.attempt, motions, bodies);
         self.look_at_the_end();
     }
 

@@ -209,7 +209,7 @@ impl Driver {
         self.contacts.end_points(&mut self.attempt);
         self.report_own_contacts();
         let mut contacts = self.contacts.take_sums();
-        let energies = (self.parts.stored_mut(), self.balances.reactions_mut());
+        let energies = (self.parts.energies_mut(), self.balances.reactions_mut());
         let parts = &mut direct.parts[..];
         let told = Told {
             failed: failed.is_some(),

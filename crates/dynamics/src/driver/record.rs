@@ -25,8 +25,9 @@ impl Driver {
             let records = &self.attempt.next.records.contacts;
             let momenta = |part: usize| sum(&system, &system.parts[part], work);
             self.attempt.next.exchange.close(&system, momenta, records);
+            let bodies = self.parts.energy_of_bodies();
             self.balances
-                .balance_assemblies(&self.contacts, &mut self.attempt);
+                .balance_assemblies(&self.contacts, &mut self.attempt, bodies);
         }
         self.look_at_the_end();
     }

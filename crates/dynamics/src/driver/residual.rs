@@ -47,7 +47,7 @@ impl Driver {
             self.links.turn_rows(&self.attempt);
             let (between, dt) = (self.attempt.between(), self.attempt.dt);
             self.parts
-                .store(
+                .internal(
                     &mut self.attempt,
                     (Configuration::Place, between),
                     |map| match between {

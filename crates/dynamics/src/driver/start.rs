@@ -241,9 +241,9 @@ impl Driver {
             .vectors
             .rate
             .clone_from(&self.attempt.state.motion.v);
-        let stored =
-            self.parts
-                .internal(&mut self.attempt, (Configuration::Place, false), |_| 0.0)?;
+        self.parts
+            .internal(&mut self.attempt, (Configuration::Place, false), |_| 0.0)?;
+        let stored = *self.parts.stored();
         self.attempt
             .state
             .motion
@@ -274,7 +274,7 @@ impl Driver {
             true => self.start_works(stored.strain, stored.hardening),
             false => self.parts.start_identity(&mut self.attempt, stored.strain),
         }
-        self.attempt.start_assemblies();
+        self.attempt.start_assemblies(self.parts.energy_of_bodies());
         Ok(())
     }
 

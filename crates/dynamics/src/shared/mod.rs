@@ -17,10 +17,11 @@ mod parts;
 mod spread;
 mod whole;
 
-use carom_bodies::{Error as BodyError, Looks, Placement, Seen, Share, Stored};
+use carom_bodies::{Looks, Placement, Seen, Share};
 use carom_ranks::{Message, Ranks};
 
 use crate::blocks::{Block, blocks_of};
+use crate::body_energies::BodyEnergies;
 use crate::contact_sums::ContactSums;
 use crate::error::Error;
 use crate::march::{Scope, Watched};
@@ -190,13 +191,14 @@ impl Shared {
         })
     }
 
-    /// Internal forces at the nodes of this rank, N, which are zero before, and histories of its elements. After an error the others have
+    /// Internal forces at the nodes of this rank, N, which are zero before, and histories and energies of its elements. After an error the others have
     /// forces of no use.
     pub(crate) fn forces(
         &mut self,
         system: &System,
         (old, new, dt): (&Motion, &mut Motion, f64),
-    ) -> Result<Stored, Error> {
+        energies: &mut BodyEnergies,
+    ) -> Result<(), Error> {
         let Motion {
             u,
             history,
@@ -211,10 +213,11 @@ impl Shared {
             receives,
             ..
         } = self;
-        let mut sum = Ok(Stored::default());
+        energies.begin(bodies.len());
+        let mut forced = Ok(());
         let mut add = |side: usize, forces: &mut [f64]| {
             let ranges = &system.nonlinear.histories;
-            for (shares, range) in bodies.iter_mut().zip(ranges) {
+            for (body, (shares, range)) in bodies.iter_mut().zip(ranges).enumerate() {
                 let at = Placement {
                     u,
                     v: &[],
@@ -223,10 +226,14 @@ impl Shared {
                     dt,
                     old: &old.history[range.clone()],
                 };
-                let given = shares[side].force(&at, &mut history[range.clone()], forces);
-                include(&mut sum, given);
+                match shares[side].force(&at, &mut history[range.clone()], forces) {
+                    Ok(given) => energies.include(body, &given),
+                    // the first one tells the cause
+                    Err(error) if forced.is_ok() => forced = Err(error),
+                    Err(_) => {}
+                }
             }
-            sum.is_ok()
+            forced.is_ok()
         };
         let dim = system.dim;
         let known = add(0, internal_force);
@@ -240,7 +247,7 @@ impl Shared {
             add(1, internal_force);
         });
         self.add_up(dim, internal_force);
-        Ok(sum?)
+        Ok(forced?)
     }
 
     /// Adds what the ranks give at shared nodes, in their order.
@@ -360,7 +367,7 @@ impl Shared {
     pub(crate) fn sum_up(
         &mut self,
         parts: &mut [Sums],
-        (stored, supports): (&mut Stored, &mut [Resultant]),
+        (energies, supports): (&mut BodyEnergies, &mut [Resultant]),
         contacts: &mut [ContactSums],
         told: &Told,
     ) -> Told {
@@ -380,9 +387,9 @@ impl Shared {
         for support in supports.iter() {
             sums.extend(support.linear.iter().chain(&support.angular));
         }
-        sums.extend(energies(stored).map(|energy| *energy));
+        sums.extend(energies.sums().map(|energy| *energy));
         largest.extend([
-            stored.compression,
+            energies.all.compression,
             f64::from(told.failed),
             told.passes as f64,
         ]);
@@ -399,10 +406,10 @@ impl Shared {
             let entries = support.linear.iter_mut().chain(&mut support.angular);
             entries.for_each(|entry| *entry = next());
         }
-        for energy in energies(stored) {
+        for energy in energies.sums() {
             *energy = next();
         }
-        stored.compression = most();
+        energies.all.compression = most();
         let told = Told {
             failed: most() != 0.0,
             passes: most() as usize,
@@ -432,27 +439,5 @@ fn add(nodes: &[u32], dim: usize, values: &[f64], vector: &mut [f64]) {
         for (sum, given) in sums.iter_mut().zip(given) {
             *sum += given;
         }
-    }
-}
-
-/// The energies that are summed.
-fn energies(stored: &mut Stored) -> [&mut f64; 5] {
-    let Stored {
-        strain,
-        hardening,
-        dissipated,
-        hourglass,
-        viscous,
-        ..
-    } = stored;
-    [strain, hardening, dissipated, hourglass, viscous]
-}
-
-/// Adds energies, or keeps the first error.
-fn include(sum: &mut Result<Stored, BodyError>, given: Result<Stored, BodyError>) {
-    match (&mut *sum, given) {
-        (Ok(all), Ok(part)) => all.include(&part),
-        (Ok(_), Err(error)) => *sum = Err(error),
-        (Err(_), _) => {}
     }
 }

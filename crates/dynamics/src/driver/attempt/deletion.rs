@@ -28,6 +28,7 @@ impl Attempt {
             let deleted = body.delete(&at, &mut next.motion.history[range])?;
             if deleted.elements > 0 {
                 next.ledger.delete(&deleted);
+                next.assemblies.delete(number, &deleted);
             }
         }
         if next.ledger.deleted > before {

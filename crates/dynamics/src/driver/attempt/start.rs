@@ -2,6 +2,7 @@
 
 use super::Attempt;
 use crate::assembly_energy::{AssemblyEnergies, PartMotion};
+use crate::body_energies::BodyEnergy;
 use crate::driver::balances::record::motion_of;
 use crate::exchange::Exchange;
 
@@ -40,8 +41,8 @@ impl Attempt {
         }
     }
 
-    /// Energies of the assemblies begin with the dynamics.
-    pub(crate) fn start_assemblies(&mut self) {
+    /// Energies of the assemblies begin with the dynamics. `bodies`: of the state.
+    pub(crate) fn start_assemblies(&mut self, bodies: &[BodyEnergy]) {
         self.state.assemblies = AssemblyEnergies::default();
         if self.is_static() {
             return;
@@ -62,6 +63,9 @@ impl Attempt {
             }
         };
         self.state.assemblies = AssemblyEnergies::start(system, part);
+        if system.is_nonlinear() {
+            self.state.assemblies.store(bodies);
+        }
         self.state.records.small.begin_dynamics();
     }
 

@@ -3,11 +3,11 @@
 use std::sync::Arc;
 
 use super::Balances;
-use crate::assembly_energy::{PartMotion, balance_taken};
+use crate::assembly_energy::PartMotion;
+use crate::body_energies::BodyEnergy;
 use crate::driver::attempt::Attempt;
 use crate::driver::contacts::Contacts;
 use crate::exchange::sum;
-use crate::state::State;
 use crate::system::{Motion, System};
 
 /// A connected part at the end of a step from displacements and internal forces to a motion. `momentum`: M v of it, by unknown.
@@ -30,8 +30,13 @@ pub(crate) fn motion_of(
 }
 
 impl Balances {
-    /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`.
-    pub(crate) fn balance_assemblies(&mut self, contacts: &Contacts, attempt: &mut Attempt) {
+    /// Energies of the assemblies at the end of the step, whose momenta M v are in `work`. `bodies`: energies there.
+    pub(crate) fn balance_assemblies(
+        &mut self,
+        contacts: &Contacts,
+        attempt: &mut Attempt,
+        bodies: &[BodyEnergy],
+    ) {
         self.work_of_obstacles(contacts, attempt);
         let inertia = attempt.inertia_of_identity();
         let system = Arc::clone(&attempt.system);
@@ -63,24 +68,23 @@ impl Balances {
         motions.clear();
         motions.extend((0..system.parts.len()).map(part));
         let motions = std::mem::take(motions);
-        self.add_to_assemblies(attempt, motions);
+        self.add_to_assemblies(attempt, motions, bodies);
     }
 
-    /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part.
+    /// Adds the end of a step to the energies of the assemblies. `motions`: by connected part; `bodies`: energies at the end.
     pub(crate) fn add_to_assemblies(
         &mut self,
         attempt: &mut Attempt,
         mut motions: Vec<PartMotion>,
+        bodies: &[BodyEnergy],
     ) {
-        let internal = |state: &State| state.ledger.balance.internal();
-        if attempt.system.is_nonlinear() {
-            balance_taken(
-                &mut motions,
-                internal(&attempt.next) - internal(&attempt.state),
-            );
-        }
         let assemblies = &mut attempt.next.assemblies;
         assemblies.follow(&attempt.state.assemblies);
+        if attempt.system.is_nonlinear() {
+            self.works
+                .balance_materials(&attempt.system, &mut motions, (assemblies, bodies));
+            assemblies.store(bodies);
+        }
         let records = &attempt.next.records.contacts[..];
         assemblies.add(&attempt.system, &motions, (records, &self.works.obstacles));
         self.works.motions = motions;

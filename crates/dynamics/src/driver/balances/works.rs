@@ -1,6 +1,7 @@
 //! Works of the forces of a step that are not all linear.
 
-use crate::assembly_energy::PartMotion;
+use crate::assembly_energy::{AssemblyEnergies, PartMotion, Taken, balance_taken};
+use crate::body_energies::BodyEnergy;
 use crate::driver::attempt::vectors::Vectors;
 use crate::system::System;
 
@@ -25,9 +26,30 @@ pub(crate) struct Works {
     pub(crate) obstacles: Vec<f64>,
     /// Connected parts at the end of the step.
     pub(crate) motions: Vec<PartMotion>,
+    /// What the materials of assemblies that are balanced together took in the step.
+    taken: Vec<Taken>,
 }
 
 impl Works {
+    /// Makes the works of the internal forces on the connected parts add up to what their materials took. `start`: of the step; `end`: of each body at
+    /// its end.
+    pub(crate) fn balance_materials(
+        &mut self,
+        system: &System,
+        motions: &mut [PartMotion],
+        (start, end): (&AssemblyEnergies, &[BodyEnergy]),
+    ) {
+        let assemblies = &system.assemblies;
+        let of_part = |part: usize| assemblies.all[assemblies.of_part[part]].balanced_with;
+        let taken = &mut self.taken;
+        taken.clear();
+        taken.resize(assemblies.all.len(), Taken::default());
+        for (part, own) in system.part_of_body.iter().zip(start.taken(end)) {
+            taken[of_part(*part)].exact += own;
+        }
+        balance_taken(motions, taken, of_part);
+    }
+
     /// Sets all but springs and mean. `link`: forces of links, N, empty without any; `factor`: of the contact forces; `push`: the factor of
     /// contact forces that push by themselves.
     pub(crate) fn hold(

@@ -103,7 +103,7 @@ impl Contacts {
             .copy_from_slice(&attempt.vectors.internal);
         let dt = attempt.dt;
         if !ended {
-            parts.store(attempt, (Configuration::Next, false), |_| dt)?;
+            parts.internal(attempt, (Configuration::Next, false), |_| dt)?;
         }
         if affine && !known && attempt.system.is_nonlinear() {
             parts.balance_linear_forces(attempt);

@@ -47,7 +47,7 @@ impl Parts {
         attempt: &mut Attempt,
         identity: &EnergyIdentity,
     ) -> Energies {
-        let strain = self.stored.strain;
+        let strain = self.stored().strain;
         let [memory, lagged] = self.own_energies(attempt, End::Finish, identity, strain);
         let (system, new) = (&*attempt.system, &attempt.next.motion);
         let of = (strain, identity.inertia != 0.0, Some(&new.u[..]));

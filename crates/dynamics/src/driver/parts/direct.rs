@@ -49,7 +49,8 @@ impl Parts {
         };
         let out = (&mut motion.history[..], &mut motion.internal_force[..]);
         let dt = attempt.dt;
-        self.stored = add_up(&attempt.system, &at, |_| dt, out, &mut self.scratch)?;
+        let own = (&mut self.scratch[..], &mut self.energies);
+        add_up(&attempt.system, &at, |_| dt, out, own)?;
         attempt.phases.forces += begin.elapsed();
         Ok(())
     }

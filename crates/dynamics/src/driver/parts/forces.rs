@@ -3,9 +3,10 @@
 use std::time::Instant;
 
 use carom_algebra::rotation::Rotation;
-use carom_bodies::{Placement, Scratch, Stored};
+use carom_bodies::{Placement, Scratch};
 
 use super::Parts;
+use crate::body_energies::BodyEnergies;
 use crate::driver::attempt::vectors::Vectors;
 use crate::driver::attempt::{Attempt, Configuration};
 use crate::error::Error;
@@ -24,7 +25,7 @@ pub(crate) struct Bodies<'a> {
     pub(crate) history: &'a [f64],
 }
 
-/// Adds the internal forces of all bodies (N) and writes their histories. `dt`: time since the start of the step, by body, s.
+/// Adds the internal forces of all bodies (N) and writes their histories and energies. `dt`: time since the start of the step, by body, s.
 ///
 /// # Errors
 /// An element turned inside out, a material without stress.
@@ -33,9 +34,9 @@ pub(crate) fn add_up(
     of: &Bodies,
     dt: impl Fn(usize) -> f64,
     (history, internal): (&mut [f64], &mut [f64]),
-    scratch: &mut [Scratch],
-) -> Result<Stored, Error> {
-    let mut sum = Stored::default();
+    (scratch, energies): (&mut [Scratch], &mut BodyEnergies),
+) -> Result<(), Error> {
+    energies.begin(system.bodies.len());
     for (k, body) in system.bodies.iter().enumerate() {
         let range = system.nonlinear.histories[k].clone();
         let at = Placement {
@@ -47,26 +48,12 @@ pub(crate) fn add_up(
             old: &of.history[range.clone()],
         };
         let stored = body.force(&at, &mut history[range], &mut scratch[k], internal)?;
-        sum.include(&stored);
+        energies.include(k, &stored);
     }
-    Ok(sum)
+    Ok(())
 }
 
 impl Parts {
-    /// Internal forces of the iteration, whose energies are kept; see [`Parts::internal`].
-    ///
-    /// # Errors
-    /// As [`Parts::internal`].
-    pub(crate) fn store(
-        &mut self,
-        attempt: &mut Attempt,
-        at: (Configuration, bool),
-        after: impl Fn(&StepMap) -> f64,
-    ) -> Result<(), Error> {
-        self.stored = self.internal(attempt, at, after)?;
-        Ok(())
-    }
-
     /// Forces of dashpots and of Rayleigh's damping at the velocity of the iteration, N.
     pub(crate) fn evaluate_damping(&mut self, attempt: &mut Attempt) {
         let system = &*attempt.system;
@@ -99,7 +86,7 @@ impl Parts {
         }
     }
 
-    /// Internal forces of all bodies where `place` says, into `internal`; histories into the scratch history. `dt`: time since
+    /// Internal forces of all bodies where `place` says, into `internal`; histories into the scratch history; the energies are kept. `dt`: time since
     /// the start of the step, s.
     ///
     /// # Errors
@@ -109,7 +96,7 @@ impl Parts {
         attempt: &mut Attempt,
         (place, from): (Configuration, bool),
         dt: impl Fn(&StepMap) -> f64,
-    ) -> Result<Stored, Error> {
+    ) -> Result<(), Error> {
         let begin = Instant::now();
         let system = &*attempt.system;
         let Vectors {
@@ -138,9 +125,10 @@ impl Parts {
         };
         let maps = &attempt.maps;
         let dt = |body: usize| dt(&maps.all()[system.zone_of_body[body]]);
-        let sum = add_up(system, &at, dt, (history, internal), &mut self.scratch)?;
+        let own = (&mut self.scratch[..], &mut self.energies);
+        add_up(system, &at, dt, (history, internal), own)?;
         attempt.phases.forces += begin.elapsed();
-        Ok(sum)
+        Ok(())
     }
 
     /// Strain energy U(u), J, of linear bodies, and f(u), N, into `work`. `u`: in `place`.

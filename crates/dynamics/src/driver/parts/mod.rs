@@ -28,6 +28,7 @@ use std::time::Instant;
 use carom_bodies::{Scratch, Stored};
 use carom_ranks::Ranks;
 
+use crate::body_energies::{BodyEnergies, BodyEnergy};
 use crate::driver::attempt::Attempt;
 use crate::driver::explicit::leapfrog::Direct;
 use crate::error::Error;
@@ -56,7 +57,7 @@ pub(crate) struct Parts {
     /// Sizes of the forces of each assembly.
     squares: Vec<Squares>,
     /// Energies of the iteration.
-    stored: Stored,
+    energies: BodyEnergies,
     /// Whether the residual without the forces of links, and the pairing, are those of the step.
     prepared: bool,
     /// Norm of the forces that the iterations of the step may leave unbalanced, N.
@@ -80,7 +81,7 @@ impl Parts {
             refined: Refined::default(),
             carried: Carried::default(),
             squares: Vec::new(),
-            stored: Stored::default(),
+            energies: BodyEnergies::default(),
             prepared: false,
             left_over: 0.0,
         })
@@ -177,8 +178,8 @@ impl Parts {
     }
 
     /// Energies of the iteration, to add those of other ranks.
-    pub(crate) fn stored_mut(&mut self) -> &mut Stored {
-        &mut self.stored
+    pub(crate) fn energies_mut(&mut self) -> &mut BodyEnergies {
+        &mut self.energies
     }
 
     /// Matrices, factors and compliances.
@@ -208,7 +209,12 @@ impl Parts {
 
     /// Energies of the iteration.
     pub(crate) fn stored(&self) -> &Stored {
-        &self.stored
+        &self.energies.all
+    }
+
+    /// The same of each body.
+    pub(crate) fn energy_of_bodies(&self) -> &[BodyEnergy] {
+        &self.energies.each
     }
 
     /// Norm of the forces that the iterations of the step may leave unbalanced, N.
@@ -267,9 +273,8 @@ impl Parts {
                 .clear(dim, &mut attempt.next.motion.internal_force);
         }
         let motions = (&attempt.state.motion, &mut attempt.next.motion, attempt.dt);
-        let stored = shared.forces(&attempt.system, motions);
+        let forced = shared.forces(&attempt.system, motions, &mut self.energies);
         attempt.phases.forces += begin.elapsed();
-        self.stored = stored?;
-        Ok(())
+        forced
     }
 }

@@ -67,7 +67,7 @@ impl Parts {
     /// [`Error::Viscous`].
     pub(crate) fn check_viscosity(&self, attempt: &Attempt, dt: f64) -> Result<(), Error> {
         let state = &attempt.state;
-        let more = state.shapes.by_compression * self.stored.compression;
+        let more = state.shapes.by_compression * self.stored().compression;
         let critical = 1.0 / (PART / state.control.stable + 0.5 * more);
         if more > 0.0 && dt > critical {
             return Err(Error::Viscous {
