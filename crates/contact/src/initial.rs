@@ -150,6 +150,7 @@ impl Contact {
                     first: 0,
                     reach: sight.deepest(),
                     step: None,
+                    start: None,
                     inside: &|_| false,
                     initial: &Pairing::default(),
                     own: None,

@@ -29,6 +29,7 @@ pub(crate) mod group;
 pub(crate) mod guess;
 pub(crate) mod kept;
 pub(crate) mod lines;
+pub(crate) mod through;
 mod way;
 
 /// Memory of the search of one contact, renewed at each pairing. What it holds does not matter to results, but for the points

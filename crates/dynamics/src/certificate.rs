@@ -220,7 +220,22 @@ impl Certificate {
             crossing.is_none()
         });
         next.pairs = pairs;
-        cuts
+        cuts || self.meets_again(system, (end, [before, time]), next)
+    }
+
+    /// Whether two that met, and are apart since, meet again in a way that a smaller step may keep them from. It was told before.
+    fn meets_again(&mut self, system: &System, step: (&State, [f64; 2]), next: &mut Told) -> bool {
+        let mut met: Vec<[u32; 2]> = next.crossings.iter().map(|crossing| crossing.of).collect();
+        met.retain(|of| {
+            for number in of {
+                self.movers[*number as usize].place();
+            }
+            let mut pair = Pair { of: *of, left: 0.0 };
+            !self.overlaps_at_start(system.dim, *of)
+                && (self.look(system, step, (&mut pair, &mut next.tested)))
+                    .is_some_and(|crossing| self.may_be_cut(system, &crossing))
+        });
+        !met.is_empty()
     }
 
     /// The attempt that was looked at last is taken.
@@ -392,7 +407,18 @@ fn moved<'a>(
 /// already (`held`) that is more: a smaller step makes the force of an impulse larger.
 fn most_unseen([one, other]: [&Core; 2], held: bool) -> f64 {
     match held {
-        true => one.half().min(other.half()),
+        true => {
+            let f: f64 = std::env::var("CAROM_X")
+                .ok()
+                .and_then(|f| f.parse().ok())
+                .unwrap_or(0.0);
+            let margin = |a: &Core, b: &Core| a.margin(a.part_against(b));
+            if f > 0.0 {
+                f * (margin(one, other) + margin(other, one))
+            } else {
+                one.half().min(other.half())
+            }
+        }
         false => {
             let margin = |a: &Core, b: &Core| a.margin(a.part_against(b));
             SEEN * (margin(one, other) + margin(other, one))

@@ -18,6 +18,7 @@ use crate::search::faces::{FaceTree, Question};
 use crate::search::group::Group;
 use crate::search::kept::Kept;
 use crate::search::lines::Lines;
+use crate::search::through::Start;
 use crate::search::{Stand, Way, faces_point, foot_on, is_between};
 use crate::{Contact, Places, Search, Target};
 
@@ -161,7 +162,19 @@ impl Contact {
         if group.kept.len() <= slot {
             group.kept.resize_with(BLOCK, Kept::default);
         }
-        let found = tree.closest(target, &question, &mut group.kept[slot], &mut group.scratch);
+        let mut found = tree.closest(target, &question, &mut group.kept[slot], &mut group.scratch);
+        let start = near.start.filter(|_| !inside).map(|places| Start {
+            places,
+            x: point.place(places),
+        });
+        let kept = &mut group.kept[slot].face;
+        if let (Some((foot, _)), Some(item), Some(start)) = (&found, *kept, &start)
+            && foot.gap < 0.0
+            && let Some((item, foot)) = tree.come_through(target, &question, start, item)
+        {
+            *kept = Some(item);
+            found = Some((foot, &target.1[item as usize]));
+        }
         if let (true, Some((foot, face)), Some(item)) =
             (group.watches, &found, group.kept[slot].face)
             && faces_point((stand, foot), face, view.is_none(), || {

@@ -16,7 +16,9 @@ pub struct Near<'a> {
     /// Largest gap that is looked at, m.
     pub reach: f64,
     /// The step of this pairing; none where all within reach count, however far nodes have moved.
-    pub step: Option<Step<'a>>,
+    pub step: Option<Step>,
+    /// Where nodes were at the start of the step; none where no step is under way.
+    pub start: Option<&'a Places<'a>>,
     /// Whether a point, by its number in the contact, was inside at the last step: it may then be so at any depth.
     pub inside: &'a (dyn Fn(usize) -> bool + Sync),
     /// Points of a contact of small sliding where all nodes are at their reference places.
@@ -37,9 +39,7 @@ pub struct OwnPart<'a> {
 
 /// The step of a pairing of near points.
 #[derive(Clone, Copy)]
-pub struct Step<'a> {
-    /// Where nodes were at its start.
-    pub start: &'a Places<'a>,
+pub struct Step {
     /// Whether the last pairing was not that of the step before.
     pub begins: bool,
     /// Whether this is its end: no gap counts that cannot have closed since the start or close in the next step.
@@ -136,7 +136,7 @@ impl Contact {
     /// Pairs the points whose gap is within reach, in a pairing that has all points of its contacts and in which those of this
     /// one face nothing ([`Pairing::reopen`]). Gap, rows and tangents of a near point are those of [`Contact::pair_fully`], or
     /// with small sliding those of [`Pairing::append_moved`]; all others face nothing, also points that are deeper than the reach
-    /// without having been inside.
+    /// without having been inside. A point that was not, and is behind a face now that it was behind at the start, faces the one that it has come through.
     ///
     /// What `search` holds from before does not matter to the result.
     pub fn pair_near(
@@ -163,10 +163,10 @@ impl Contact {
             self.points.len()
         };
         search.begin();
-        if let Some(step) = near.step
+        if let (Some(step), Some(start)) = (near.step, near.start)
             && (step.begins || !rest.is_for(units))
         {
-            self.travel(&mut rest, (units, near.own), step.start);
+            self.travel(&mut rest, (units, near.own), start);
         }
         self.travel(&mut rest, (units, near.own), places);
         let most = near.reach;
@@ -208,7 +208,7 @@ impl Contact {
         (search.rest, search.due) = (rest, due);
     }
 
-    /// Appends the points of a contact of finite sliding. Those are looked for whose gap is within `reach` (m), and those that were
+    /// Appends the points of a contact of finite sliding, in a step that began with the places of `start`. Those are looked for whose gap is within `reach` (m), and those that were
     /// `inside` the other side before: they are as [`Contact::pair_fully`] has them. All others face nothing, also those that are deeper
     /// than the reach.
     ///
@@ -217,13 +217,14 @@ impl Contact {
         &self,
         places: &Places,
         search: &mut Search,
-        (reach, inside): (f64, &(dyn Fn(usize) -> bool + Sync)),
+        (start, reach, inside): (Option<&Places>, f64, &(dyn Fn(usize) -> bool + Sync)),
         pairing: &mut Pairing,
     ) {
         let near = Near {
             first: pairing.append_open(self, places.dim()),
             reach,
             step: None,
+            start,
             inside,
             initial: &Pairing::default(),
             own: None,

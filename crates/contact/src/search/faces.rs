@@ -169,6 +169,11 @@ impl FaceTree {
         }
     }
 
+    /// Unit normals of the secondary faces, where a view has asked for them.
+    pub(super) fn normals(&self) -> &[[f64; 3]] {
+        &self.normals
+    }
+
     /// Takes the normals that a view asks for.
     pub fn see(&mut self, view: View, places: &Places) {
         let (seen, now) = &mut self.seen;

@@ -387,7 +387,12 @@ fn near_edges_are_those_of_all_that_are_within_reach() {
             let u = bars.down(1e-4 * f64::from(step).powi(2));
             let places = bars.places(&unknowns, &u);
             pairing.clear();
-            contact.append_near(&places, &mut search, (reach, &|_| false), &mut pairing);
+            contact.append_near(
+                &places,
+                &mut search,
+                (None, reach, &|_| false),
+                &mut pairing,
+            );
             let all = paired(&contact, &places);
             for point in 0..all.len() {
                 let gap = all.rows.gap(point);

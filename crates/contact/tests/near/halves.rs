@@ -83,6 +83,7 @@ fn compare_halves(
         all.open_all(std::slice::from_ref(contact), 3);
         let (inside, initial) = (|point: usize| gaps[point] < 0.0, Pairing::default());
         let near = |own| Near {
+            start: None,
             first: 0,
             reach,
             step: None,

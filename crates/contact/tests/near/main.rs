@@ -192,10 +192,10 @@ fn compare(scene: &Scene, contact: &Contact, first: usize, way: Way) -> Seen {
         }
         near.reopen();
         let given = Near {
+            start: way.short.then_some(&start),
             first: 0,
             reach: REACH,
             step: way.short.then_some(Step {
-                start: &start,
                 begins: lost,
                 at_end: true,
             }),
@@ -413,6 +413,7 @@ fn sheets_that_fly_together_are_looked_at_once() {
         let places = places(&unknowns, &scene, &u);
         near.reopen();
         let given = Near {
+            start: None,
             first: 0,
             reach: REACH,
             step: None,
@@ -454,6 +455,7 @@ fn near_points_have_the_same_bits_on_any_number_of_threads() {
                 let places = places(&unknowns, &scene, &u);
                 near.reopen();
                 let given = Near {
+                    start: None,
                     first: 0,
                     reach: REACH,
                     step: None,

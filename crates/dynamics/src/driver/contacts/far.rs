@@ -176,11 +176,11 @@ impl Far {
         self.placed = false;
     }
 
-    /// Appends the points of a contact at a configuration.
+    /// Appends the points of a contact at a configuration, in a step that began with the places of `start`.
     pub(crate) fn append(
         &mut self,
         (contact, number): (&Contact, usize),
-        places: &Places,
+        (places, start): (&Places, &Places),
         inside: &(dyn Fn(usize) -> bool + Sync),
         (search, pairing): (&mut Search, &mut Pairing),
     ) {
@@ -191,7 +191,7 @@ impl Far {
         if self.are_apart(number, reach, (places, None)) {
             contact.append_apart(places.dim(), search, pairing);
         } else if sees {
-            contact.append_near(places, search, (reach, inside), pairing);
+            contact.append_near(places, search, (Some(start), reach, inside), pairing);
         } else {
             contact.pair_fully(places, search, pairing);
         }

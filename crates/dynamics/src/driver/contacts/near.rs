@@ -130,7 +130,6 @@ impl Contacts {
         let gaps = &attempt.state.interface.gap;
         // motions of steps bound what can touch where points are paired with their ends
         let step = Step {
-            start: &start,
             begins: self.active.begins(),
             at_end: is_end,
         };
@@ -138,6 +137,7 @@ impl Contacts {
             first,
             reach,
             step: Some(step),
+            start: Some(&start),
             inside: &|point| gaps[first + point] < 0.0,
             initial,
             own,

@@ -121,7 +121,10 @@ impl Contacts {
             );
             let inside = |point: usize| gaps[first + point] < 0.0;
             let kept = (&mut self.search[number], &mut self.pairing);
-            return self.far.append((contact, number), &places, &inside, kept);
+            let (motion, time) = (&attempt.state.motion, attempt.state.time);
+            let start = system.places(time, &motion.u, &motion.frames);
+            let placed = (&places, &start);
+            return self.far.append((contact, number), placed, &inside, kept);
         }
         let kept = (&mut self.search[number], &mut self.initial[number]);
         append(contact, &places, work, kept, &mut self.pairing);
