@@ -407,18 +407,7 @@ fn moved<'a>(
 /// already (`held`) that is more: a smaller step makes the force of an impulse larger.
 fn most_unseen([one, other]: [&Core; 2], held: bool) -> f64 {
     match held {
-        true => {
-            let f: f64 = std::env::var("CAROM_X")
-                .ok()
-                .and_then(|f| f.parse().ok())
-                .unwrap_or(0.0);
-            let margin = |a: &Core, b: &Core| a.margin(a.part_against(b));
-            if f > 0.0 {
-                f * (margin(one, other) + margin(other, one))
-            } else {
-                one.half().min(other.half())
-            }
-        }
+        true => one.half().min(other.half()),
         false => {
             let margin = |a: &Core, b: &Core| a.margin(a.part_against(b));
             SEEN * (margin(one, other) + margin(other, one))

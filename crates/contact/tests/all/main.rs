@@ -21,6 +21,7 @@ mod search;
 mod sides;
 mod sight;
 mod steep;
+mod through;
 
 #[global_allocator]
 static COUNTER: carom_testing::Counter = carom_testing::Counter;
