@@ -182,7 +182,7 @@ impl Search {
         let slot = self.next;
         if let Some(held) = self.ways.get(slot).and_then(|way| way.held) {
             self.next += 1;
-            return Some(foot_on(places, faces, held, x));
+            return Some(self.faces.held((places, faces), (stand, view), held));
         }
         let found = self
             .closest((places, faces), view, stand, f64::INFINITY)

@@ -198,14 +198,20 @@ impl FaceTree {
             }
             count += 1;
             let foot = foot_on(places, faces, item, x).0;
-            let seen = view.is_none_or(|view| {
-                view.shows(places, (item, &foot), &self.normals)
-                    && faces_point((stand, &foot), face, false, || places.of_face(face))
-                    && !view.is_over_neighbour((item, &foot), stand, (places, faces))
-            });
-            if !seen {
-                return f64::INFINITY;
-            }
+            let foot = match view {
+                None => foot,
+                Some(view) => {
+                    let seen = view.seen((places, stand), (item, face), foot, &self.normals);
+                    let seen = seen.filter(|foot| {
+                        faces_point((stand, foot), face, false, || places.of_face(face))
+                            && !view.is_over_neighbour((item, foot), stand, (places, faces))
+                    });
+                    match seen {
+                        Some(foot) => foot,
+                        None => return f64::INFINITY,
+                    }
+                }
+            };
             let nearer = |(first, best): &(u32, Projection)| {
                 foot.distance < best.distance || foot.distance == best.distance && item < *first
             };
@@ -318,6 +324,20 @@ impl FaceTree {
         tree.closest(&there, within, self.moved + beside, measure)
     }
 
+    /// The foot of a place on a face that it stays with.
+    pub fn held<'a>(
+        &self,
+        (places, faces): (&Places, &'a [Face]),
+        (stand, view): (Stand, Option<View>),
+        item: u32,
+    ) -> (Projection, &'a Face) {
+        let (foot, face) = foot_on(places, faces, item, stand.x);
+        let turned = view.filter(|_| face.is_round());
+        let turned =
+            turned.and_then(|view| view.seen((places, stand), (item, face), foot, &self.normals));
+        (turned.unwrap_or(foot), face)
+    }
+
     /// Items whose boxes are within a distance (m) of a place.
     pub fn near(&self, x: &[f64; 3], within: f64) -> Vec<u32> {
         let mut near = Vec::new();
@@ -392,9 +412,9 @@ impl FaceTree {
         };
         if let Some((view, height)) = outlook.0.filter(|_| rest < most) {
             self.with_corners((item, face), places, |corners| {
-                rest = rest.max(view.hidden((item, corners), height, &self.normals));
+                rest = rest.max(view.hidden((item, face), corners, height, &self.normals));
                 if rest < most {
-                    rest = rest.max(view.behind(corners, x));
+                    rest = rest.max(view.behind(face, corners, x));
                 }
             });
         }
@@ -414,7 +434,7 @@ impl FaceTree {
         places: &Places,
     ) -> bool {
         self.with_corners((item, face), places, |corners| {
-            corners.is_some_and(|corners| view.is_blind((item, corners), x, &self.normals))
+            corners.is_some_and(|corners| view.is_blind((item, face), corners, x, &self.normals))
         })
     }
 
@@ -436,9 +456,15 @@ impl FaceTree {
         &self,
         places: &Places,
         view: Option<View>,
-        (item, foot): (u32, &Projection),
+        of: (u32, &Face),
+        foot: &Projection,
     ) -> bool {
-        view.is_none_or(|view| view.shows(places, (item, foot), &self.normals))
+        let stand = Stand {
+            x: &foot.point,
+            of: None,
+        };
+        let seen = |view: View| view.seen((places, stand), of, *foot, &self.normals);
+        view.is_none_or(|view| seen(view).is_some())
     }
 
     /// Faces whose boxes have a point in common with a box, sorted, into `found`, which is cleared first.
