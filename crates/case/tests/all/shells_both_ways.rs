@@ -5,44 +5,45 @@ use carom_dynamics::Silent;
 
 use crate::verdict::result;
 
-/// A shell of 4 mm in one face, and a tetrahedron with its tip 1 mm above it, between its nodes.
-const TIP: &str = r#"$MeshFormat
-2.2 0 8
-$EndMeshFormat
-$PhysicalNames
-4
-2 1 "plate"
-3 2 "tip"
-2 3 "tip-skin"
-1 4 "rim"
-$EndPhysicalNames
-$Nodes
-8
-1 0.0 0.0 0.0
-2 0.1 0.0 0.0
-3 0.1 0.1 0.0
-4 0.0 0.1 0.0
-5 0.03 0.02 0.043
-6 0.07 0.03 0.043
-7 0.05 0.07 0.043
-8 0.05 0.045 0.003
-$EndNodes
-$Elements
-10
-1 3 2 1 1 1 2 3 4
-2 4 2 2 2 6 5 7 8
-3 2 2 3 3 5 6 7
-4 2 2 3 3 6 5 8
-5 2 2 3 3 7 6 8
-6 2 2 3 3 5 7 8
-7 1 2 4 4 1 2
-8 1 2 4 4 2 3
-9 1 2 4 4 3 4
-10 1 2 4 4 4 1
-$EndElements
-"#;
+/// A shell in one face, and a cube of 40 mm that stands on its corner 3 mm above the middle of that, between its nodes.
+fn mesh() -> String {
+    let (x, y, z) = (
+        (2.0_f64 / 3.0).sqrt(),
+        0.5_f64.sqrt(),
+        (1.0_f64 / 3.0).sqrt(),
+    );
+    let along = [[x, 0.0, z], [-0.5 * x, y, z], [-0.5 * x, -y, z]];
+    let corners = ["000", "100", "110", "010", "001", "101", "111", "011"];
+    let places = corners.map(|corner| {
+        let steps: Vec<f64> = corner.chars().map(|c| f64::from(c == '1')).collect();
+        let at = |i: usize| (0..3).map(|k| 0.04 * steps[k] * along[k][i]).sum::<f64>();
+        [0.05 + at(0), 0.045 + at(1), 0.003 + at(2)]
+    });
+    let plate = [[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]].map(|[x, y]| [x, y, 0.0]);
+    let nodes = plate.iter().chain(&places).zip(1..);
+    let nodes: String = nodes
+        .map(|([x, y, z], k)| format!("{k} {x:?} {y:?} {z:?}\n"))
+        .collect();
+    let skin = [
+        "5 6 7 8",
+        "9 10 11 12",
+        "5 6 10 9",
+        "6 7 11 10",
+        "7 8 12 11",
+        "8 5 9 12",
+    ];
+    let skin = skin.iter().zip(3..);
+    let skin: String = skin
+        .map(|(side, k)| format!("{k} 3 2 3 3 {side}\n"))
+        .collect();
+    let names = "3\n2 1 \"plate\"\n3 2 \"cube\"\n2 3 \"skin\"";
+    let elements = format!("1 3 2 1 1 1 2 3 4\n2 5 2 2 2 5 6 7 8 9 10 11 12\n{skin}");
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{names}\n$EndPhysicalNames\n$Nodes\n12\n{nodes}$EndNodes\n$Elements\n8\n{elements}$EndElements\n"
+    )
+}
 
-/// The tip falls on the plate; first closing, s, and the force in all steps, N.
+/// The cube falls on the plate; first closing, s, and the force in all steps, N.
 fn dropped(contact: &str) -> (f64, Vec<f64>) {
     let text = format!(
         r#"
@@ -50,14 +51,14 @@ carom = 1
 mesh.file = "m.msh"
 material.m = {{ density = 1000.0, elastic = {{ young = "1 GPa", poisson = 0.3 }} }}
 body.plate = {{ region = "plate", material = "m", section.shell.thickness = "4 mm" }}
-body.tip = {{ region = "tip", material = "m", initial.velocity = [0.0, 0.0, -1.0] }}
+body.cube = {{ region = "cube", material = "m", initial.velocity = [0.0, 0.0, -1.0] }}
 contact.c = {{ {contact}, law.velocity = {{}}, sliding = "finite" }}
 time = {{ end = "3 ms", step = "50 us", scheme.theta = {{}} }}
 "#
     );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("case.toml");
-    std::fs::write(folder.path().join("m.msh"), TIP).unwrap();
+    std::fs::write(folder.path().join("m.msh"), mesh()).unwrap();
     std::fs::write(&path, text).unwrap();
     let input = Input::read(&path, &[]).unwrap();
     let (case, locator) = parse(&input).unwrap();
@@ -81,11 +82,11 @@ time = {{ end = "3 ms", step = "50 us", scheme.theta = {{}} }}
     )
 }
 
-/// The nodes of the plate are beside the tip: only that of the tip can meet it.
+/// The nodes of the plate are beside the cube: only its corner can meet the plate.
 #[test]
 fn a_corner_meets_a_shell_between_its_nodes_at_half_the_thickness_whichever_side_is_the_secondary_one()
  {
-    let sides = [("tip-skin", "plate"), ("plate", "tip-skin")];
+    let sides = [("skin", "plate"), ("plate", "skin")];
     let [one, other] = sides.map(|(secondary, primary)| {
         dropped(&format!(
             r#"secondary = "{secondary}", primary = "{primary}""#

@@ -1,5 +1,6 @@
 //! Two processes that have the points of one half each, and the faces that these may touch.
 
+use super::shells::shell_over;
 use super::*;
 
 /// Each of two processes has the points of one half and the faces that these may touch; the faces are found anew before a node can have moved

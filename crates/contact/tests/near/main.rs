@@ -3,7 +3,7 @@
 use carom_algebra::unknowns::Unknowns;
 use carom_contact::law::Displacement;
 use carom_contact::{
-    Basis, Contact, Frames, Integration, Law, Mortar, Near, OwnPart, Pairing, Parts, Places, Point,
+    Basis, Contact, Frames, Integration, Law, Mortar, Near, OwnPart, Pairing, Places, Point,
     Search, Shape, Sight, Sliding, Sphere, Step, Target,
 };
 use carom_elements::Kind;
@@ -11,6 +11,7 @@ use carom_mesh::{ElementId, Face, Rim, face_nodes};
 use carom_testing::Random;
 
 mod halves;
+mod shells;
 
 const STEPS: usize = 120;
 /// Reach, in edges.
@@ -398,60 +399,6 @@ fn a_surface_on_itself() {
     let (scene, contact) = two_plates();
     let seen = check(&scene, &contact, scene.sheets[2]);
     assert_fewer(&seen);
-}
-
-/// Half the thickness of shells, in edges: thicker than points look far.
-const HALF: f64 = 0.65;
-
-/// A shell over another side that it goes through, both ways: over a plate with both its sides, or over another shell.
-fn shell_over(is_shell: bool) -> (Scene, Contact) {
-    let mut scene = Scene::default();
-    scene.add(6, [0.0; 3], true);
-    if !is_shell {
-        scene.add(6, [0.0, 0.0, -2.0], false);
-    }
-    scene.add(5, [0.4, 0.3, 3.0], false);
-    let last = scene.sheets.len() - 1;
-    let first = scene.faces.len() - 25;
-    for (k, face) in scene.faces.iter_mut().enumerate() {
-        face.radius = (is_shell || k >= first).then_some(HALF);
-    }
-    let mut points = Vec::new();
-    for sheet in 0..=last {
-        let (faces, is_last) = (scene.of(sheet), sheet == last);
-        points.extend(nodes_of(&scene, sheet).into_iter().map(|point| {
-            let radius = if is_shell || is_last { HALF } else { 0.0 };
-            let mut point = point.around(radius);
-            let node = point.node();
-            let own = faces.iter().filter(|face| face.corners().contains(&node));
-            own.for_each(|face| point.add_face(face.corners()));
-            if is_last { point.on_primary() } else { point }
-        }));
-    }
-    let parts = Parts::both_ways(None, [first, 25], 0);
-    let depth = if is_shell { 2.0 * HALF } else { 2.0 };
-    let sight = Sight::both_ways(
-        &points,
-        (&scene.faces, &[]),
-        &scene.x,
-        (Some(depth), &parts),
-    );
-    let mut faces = scene.faces.clone();
-    Rim::mark(&mut faces, |node| scene.x[node as usize], |node| node);
-    let contact = Contact {
-        sight: Some(sight),
-        ..contact(Target::Surface(faces), points)
-    };
-    (scene, contact)
-}
-
-#[test]
-fn a_shell_and_what_it_lies_on_both_ways() {
-    for is_shell in [false, true] {
-        let (scene, contact) = shell_over(is_shell);
-        let last = *scene.sheets.last().unwrap();
-        check(&scene, &contact, last);
-    }
 }
 
 /// The bound of the motion is that against the drift.
