@@ -101,6 +101,11 @@ impl Search {
         }
     }
 
+    /// Takes the boxes of the faces anew in the next pairing of near points.
+    pub(crate) fn forget_boxes(&mut self) {
+        self.rested = None;
+    }
+
     /// Forgets when points that are far are looked at again.
     pub fn rest_anew(&mut self) {
         self.rest = Rest::default();

@@ -187,6 +187,9 @@ impl Contact {
             wide: if due.is_empty() { 0.0 } else { self.widest() },
         };
         if !due.is_empty() {
+            if rest.motion() == f64::INFINITY {
+                search.forget_boxes();
+            }
             if let (Target::Surface(faces), false) = (&self.target, small) {
                 let lines = self.edges.as_ref().map_or(&[][..], Edges::lines);
                 search.renew_near(places, (faces, lines), rest.travelled());

@@ -84,7 +84,8 @@ pub(crate) struct Scratch {
 impl FaceTree {
     /// Brings the boxes to a configuration of the faces, unless they have moved by less than the skin allows.
     pub fn renew(&mut self, places: &Places, faces: &[Face]) {
-        let tree = self.tree.as_ref().filter(|tree| tree.len() == faces.len());
+        let tree = self.tree.as_ref();
+        let tree = tree.filter(|tree| tree.len() == faces.len() && self.has_places());
         let bounds = |item: u32| hull(places, &faces[item as usize]);
         match tree.and_then(|tree| tree.motion(0.5 * self.skin, bounds)) {
             Some(moved) => {
@@ -98,7 +99,8 @@ impl FaceTree {
     /// Tells how far faces may have moved since the boxes were taken, over a translation of all; whether the boxes still serve.
     pub fn has_moved(&mut self, faces: usize, moved: f64, shift: [f64; 3]) -> bool {
         let count = self.tree.as_ref().map_or(0, BoxTree::len);
-        let serves = count == faces && (0.0..=0.5 * self.skin).contains(&moved);
+        let within = (0.0..=0.5 * self.skin).contains(&moved);
+        let serves = count == faces && within && self.has_places();
         if serves {
             (self.moved, self.shift) = (moved, shift);
             self.age = self.age.saturating_add(1);
@@ -106,14 +108,20 @@ impl FaceTree {
         serves
     }
 
+    /// Whether the tree was built of places that are numbers: not so those of iterations that lead nowhere, whose boxes would serve for ever.
+    fn has_places(&self) -> bool {
+        self.skin.is_finite()
+    }
+
     /// Takes the boxes of the faces where they are.
     pub fn take_boxes(&mut self, places: &Places, faces: &[Face]) {
         (self.moved, self.shift, self.age) = (0.0, [0.0; 3], 0);
         self.epoch = self.epoch.wrapping_add(1);
         let bounds = |item: u32| hull(places, &faces[item as usize]);
+        let has_places = self.has_places();
         if let Some(tree) = self.tree.as_mut().filter(|tree| tree.len() == faces.len()) {
             tree.refit(bounds);
-            if tree.looseness() <= LOOSE {
+            if tree.looseness() <= LOOSE && has_places {
                 return;
             }
         }
