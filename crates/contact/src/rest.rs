@@ -101,6 +101,11 @@ impl Rest {
             longest = longest.max(whole);
             *before = x;
         }
+        if sum.iter().any(|sum| !sum.is_finite()) {
+            // places of an iteration that leads nowhere: nothing is known of the way from them or to them
+            (self.drift, self.motion) = ([0.0; 3], f64::INFINITY);
+            return self.wake_all();
+        }
         self.travelled += self.spread * largest.sqrt();
         self.motion = self.spread * longest.sqrt();
         for i in 0..3 {

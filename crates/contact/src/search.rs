@@ -102,6 +102,11 @@ impl Search {
         }
     }
 
+    /// Takes the boxes of the faces anew in the next pairing of near points.
+    pub(crate) fn forget_boxes(&mut self) {
+        self.rested = None;
+    }
+
     /// Forgets when points that are far are looked at again.
     pub fn rest_anew(&mut self) {
         self.rest = Rest::default();
@@ -183,7 +188,7 @@ impl Search {
         let slot = self.next;
         if let Some(held) = self.ways.get(slot).and_then(|way| way.held) {
             self.next += 1;
-            return Some(foot_on(places, faces, held, x));
+            return Some(self.faces.held((places, faces), (stand, view), held));
         }
         let found = self
             .closest((places, faces), view, stand, f64::INFINITY)

@@ -13,7 +13,7 @@
 //!   of it.
 //!
 //! A surface around axes of beams or middles of shells has no far side: of itself all faces are in view but those that are near along
-//! the surface, which any point would touch.
+//! the surface, which any point would touch. On which side of the middle of a shell a point of another body belongs, that body tells ([`middles`]).
 
 use carom_algebra::unknowns::Unknowns;
 use carom_elements::{MAX_FACE_NODES, map};
@@ -25,11 +25,13 @@ use self::lists::{Incidence, Lists};
 pub use self::parts::{Part, Parts};
 pub(crate) use self::sides::Sides;
 pub(crate) use self::turned::Corners;
+use crate::search::Stand;
 use crate::{Frames, Places, Point};
 
 mod across;
 mod along;
 mod lists;
+mod middles;
 mod over;
 mod parts;
 mod sides;
@@ -81,6 +83,8 @@ pub struct Sight {
     sides: Option<Sides>,
     /// Whether the surface lies around axes or middles, without a far side.
     round: bool,
+    /// Whether two surfaces face each other of which one lies around middles, or both do.
+    has_middles: bool,
     /// Parts that do not touch each other, if there are any.
     parts: Option<Parts>,
 }
@@ -122,18 +126,26 @@ impl Sight {
     }
 
     /// The views of the points of two surfaces on each other, whose faces are the target together, those of the first before those of the second.
-    /// `x` and `depth` as in [`Sight::new`], the default of the depth too; `parts`: of both ([`Parts::both_ways`]).
+    /// `lines` of the second surface are behind the faces in the target. `x` and `depth` as in [`Sight::new`], the default of the depth too; `parts`:
+    /// of both ([`Parts::both_ways`]).
     pub fn both_ways(
-        (points, faces): (&[Point], &[Face]),
+        points: &[Point],
+        (faces, lines): (&[Face], &[Face]),
         x: &[[f64; 3]],
-        depth: Option<f64>,
-        parts: &Parts,
+        (depth, parts): (Option<f64>, &Parts),
     ) -> Sight {
-        let sight = Sight::up_to((points, faces), faces, x, depth);
+        let target = [faces, lines].concat();
+        let sight = Sight::up_to((points, faces), &target, x, depth);
         let mut sight = Sight {
             reach: f64::INFINITY,
+            both: true,
+            round: faces.iter().all(Face::is_round),
+            has_middles: faces.iter().any(Face::is_round),
             ..sight.with_parts(parts)
         };
+        if sight.has_middles && !sight.round {
+            sight.take_corners(points, x);
+        }
         sight.take_sides(points, x);
         sight
     }
@@ -194,6 +206,7 @@ impl Sight {
             both: itself,
             sides: None,
             round,
+            has_middles: false,
             parts: None,
         };
         if !round {
@@ -330,7 +343,7 @@ impl Sight {
     /// Decides which points tell a contact that two would tell.
     fn take_sides(&mut self, points: &[Point], x: &[[f64; 3]]) {
         // points of edges follow the nodes, and no other point yields to them
-        let nodes = points.iter().filter(|point| point.edge().is_none());
+        let nodes = points.iter().filter(|point| !point.crosses());
         let nodes = nodes.map(Point::as_node);
         let Some(nodes) = nodes.collect::<Option<Vec<u32>>>() else {
             return;
@@ -373,7 +386,7 @@ impl Sight {
                 let sideways = foot.distance.powi(2) - foot.gap.powi(2);
                 let back = foot.gap < 0.0
                     && sideways <= (BEND * foot.gap).powi(2)
-                    && view.opposes(&foot, &normals);
+                    && view.opposes(&foot.normal, &normals);
                 if back { foot.distance } else { f64::INFINITY }
             };
             if let Some((_, thickness)) = tree.closest(&place, 2.0 * *depth, 0.0, behind) {
@@ -390,18 +403,17 @@ impl View<'_> {
         self.sight.reach
     }
 
-    /// Whether a face of the target is in view, its foot being the closest point to the viewer. `normals`: of the
+    /// The foot on a face of the target that is in view, the closest point to the viewer; none of one that is not. `normals`: of the
     /// secondary faces, at this configuration.
-    pub(crate) fn shows(
+    pub(crate) fn seen(
         &self,
-        places: &Places,
-        (item, foot): (u32, &Projection),
+        (places, stand): (&Places, Stand),
+        (item, face): (u32, &Face),
+        foot: Projection,
         normals: &[[f64; 3]],
-    ) -> bool {
-        let faced = self.sight.round
-            || foot.gap >= -self.sight.depth[self.point]
-                && (self.opposes(foot, normals) || self.points_at(places, foot));
-        faced && !self.is_beside(item)
+    ) -> Option<Projection> {
+        let seen = self.faced((places, stand), (face, foot), normals)?;
+        (!self.is_beside(item)).then_some(seen)
     }
 
     /// Takes the normals of the faces around the viewer among those of all, unless they are of this configuration: `seen` tells
@@ -431,17 +443,18 @@ impl View<'_> {
     }
 
     /// The most that nodes may move, m, before a face that is out of view, wherever the foot on it is, may come into it; zero of one
-    /// that may be in view. Normals as in [`View::shows`], `height` that of [`View::height_around`], no corners of a curved face.
+    /// that may be in view. Normals as in [`View::seen`], `height` that of [`View::height_around`], no corners of a curved face.
     pub(crate) fn hidden(
         &self,
-        (item, corners): (u32, Option<&Corners>),
+        (item, face): (u32, &Face),
+        corners: Option<&Corners>,
         height: f64,
         normals: &[[f64; 3]],
     ) -> f64 {
         if self.is_beside(item) {
             return f64::INFINITY;
         }
-        let Some(corners) = corners.filter(|_| !self.sight.round) else {
+        let Some(corners) = corners.filter(|_| self.are_solids(face)) else {
             return 0.0;
         };
         let around = self.sight.around.of(self.point).iter();
@@ -456,8 +469,8 @@ impl View<'_> {
 
     /// The most that nodes may move, m, before the viewer, at `x` (m) and deep behind a face, may be within the depth or before the face; no
     /// corners of a curved one.
-    pub(crate) fn behind(&self, corners: Option<&Corners>, x: &[f64; 3]) -> f64 {
-        let corners = corners.filter(|_| !self.sight.round);
+    pub(crate) fn behind(&self, face: &Face, corners: Option<&Corners>, x: &[f64; 3]) -> f64 {
+        let corners = corners.filter(|_| self.are_solids(face));
         let depth = self.sight.depth[self.point];
         corners.map_or(0.0, |corners| turned::until_behind(corners, (x, depth)))
     }
@@ -472,17 +485,18 @@ impl View<'_> {
     }
 
     /// Whether a face is out of view wherever the foot on it is: beside the viewer at `x` (m), with the viewer too deep behind it, or with normals
-    /// that make less than 90° with those of all faces around it. Normals as in [`View::shows`].
+    /// that make less than 90° with those of all faces around it. Normals as in [`View::seen`].
     pub(crate) fn is_blind(
         &self,
-        (item, corners): (u32, &Corners),
+        (item, face): (u32, &Face),
+        corners: &Corners,
         x: &[f64; 3],
         normals: &[[f64; 3]],
     ) -> bool {
         let around = self.sight.around.of(self.point).iter();
         let normals = around.map(|&k| &normals[k as usize]);
         let depth = self.sight.depth[self.point];
-        let faced = self.sight.round || !corners.is_blind(normals, (x, depth));
+        let faced = !self.are_solids(face) || !corners.is_blind(normals, (x, depth));
         !faced || self.is_beside(item)
     }
 
@@ -491,8 +505,9 @@ impl View<'_> {
         self.sight.sharp.get(self.point).copied().flatten()
     }
 
-    /// Whether the viewer is a corner with no node around it nearer to the plane of a face: -n is in the cone of the normals of the corner.
-    fn points_at(&self, places: &Places, foot: &Projection) -> bool {
+    /// Whether the viewer is a corner with no node around it nearer to the plane of a face with the normal n: -n is in the cone of the normals of
+    /// the corner.
+    fn points_at(&self, places: &Places, n: &[f64; 3]) -> bool {
         let Some(corner) = self.corner() else {
             return false;
         };
@@ -504,16 +519,17 @@ impl View<'_> {
         nodes.all(|&node| {
             let x = places.of(node);
             let way = [0, 1, 2].map(|i| x[i] - tip[i]);
-            let along: f64 = (0..3).map(|i| way[i] * foot.normal[i]).sum();
+            let along: f64 = (0..3).map(|i| way[i] * n[i]).sum();
             let length = way.iter().map(|w| w * w).sum::<f64>().sqrt();
             along >= -LEVEL * length
         })
     }
 
-    fn opposes(&self, foot: &Projection, normals: &[[f64; 3]]) -> bool {
+    /// Whether a normal n makes more than 120° with that of a face around the viewer.
+    fn opposes(&self, n: &[f64; 3], normals: &[[f64; 3]]) -> bool {
         let opposed = |&k: &u32| {
-            let n = &normals[k as usize];
-            (0..3).map(|i| n[i] * foot.normal[i]).sum::<f64>() < OPPOSED
+            let own = &normals[k as usize];
+            (0..3).map(|i| own[i] * n[i]).sum::<f64>() < OPPOSED
         };
         self.sight.around.of(self.point).iter().any(opposed)
     }

@@ -301,7 +301,7 @@ pub(crate) fn at_edges<'a>(
 }
 
 /// Axes of beams and sharp edges of shells.
-fn lines_of(surface: &Surface, mesh: &Mesh) -> Vec<Face> {
+pub(crate) fn lines_of(surface: &Surface, mesh: &Mesh) -> Vec<Face> {
     let axes = surface.faces.iter().filter(|face| is_axis(face)).copied();
     axes.chain(surface.sharp_edges(mesh)).collect()
 }
@@ -312,7 +312,7 @@ pub(crate) fn is_axis(face: &Face) -> bool {
 }
 
 /// The point of an axis that crosses another; it stands for the square of its diameter.
-fn crossing(axis: &Face) -> Point {
+pub(crate) fn crossing(axis: &Face) -> Point {
     let diameter = 2.0 * axis.radius.unwrap_or(0.0);
     Point::crossing(axis, diameter * diameter)
 }

@@ -8,7 +8,7 @@ use carom_algebra::unknowns::Unknowns;
 use carom_bodies::{Body, height};
 use carom_contact::law::Level;
 use carom_contact::{Contact, Integration, Target};
-use carom_mesh::Mesh;
+use carom_mesh::{Face, Mesh};
 use carom_schemes::Scheme;
 
 use crate::adaptive::Adaptive;
@@ -128,7 +128,8 @@ pub struct InitialMotion {
 
 impl System {
     /// Smallest size of an element normal to the surfaces of a contact, of both its sides, m. Of a shell or a beam that others touch half the way to its
-    /// middle, a quarter of its thickness: a point that has crossed that is on the other side, and is seen as one that never was inside.
+    /// middle, a quarter of its thickness: a point that has crossed that is on the other side, and is seen as one that never was inside. Not so where
+    /// solids and shells see each other: solids tell on which side they are.
     pub fn depth_of_elements(&self, contact: usize) -> f64 {
         let primary = match &self.contacts[contact].target {
             Target::Surface(faces) => &faces[..],
@@ -139,8 +140,10 @@ impl System {
             .iter()
             .map(|face| (face, false));
         let faces = faces.chain(primary.iter().map(|face| (face, true)));
+        let both = self.contacts[contact].looks_both_ways();
+        let turns = !both || primary.iter().all(Face::is_round);
         let sizes = faces.map(|(face, touched)| {
-            if touched && face.is_round() {
+            if touched && turns && face.is_round() {
                 return 0.5 * face.radius.unwrap_or(0.0);
             }
             if let Some(radius) = face.radius.filter(|radius| *radius > 0.0) {

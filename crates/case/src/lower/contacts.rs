@@ -157,7 +157,7 @@ pub(super) fn default_sliding(context: &Context, contacts: &mut [ModelContact], 
     }
 }
 
-/// Lets contacts between solids that follow their motion be looked for both ways, at nodes, where no cells are deleted; in models without zones.
+/// Lets contacts between solids and shells that follow their motion be looked for both ways, at nodes, where no cells are deleted; in models without zones.
 pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
     let Model {
         contacts,
@@ -176,7 +176,9 @@ pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
         };
         let plain = |face: &Face| {
             let table = face.kind.table();
-            face.radius.is_none() && table.dim > 0 && !table.is_quadratic()
+            let is_solid = face.radius.is_none() && table.dim > 0;
+            let is_shell = face.is_round() && table.dim == 2;
+            (is_solid || is_shell) && !table.is_quadratic()
         };
         let sides = [&contact.secondary, primary];
         let fits = named.is_some()
@@ -202,7 +204,9 @@ pub(super) fn look_both_ways(context: &Context, model: &mut Model) {
             continue;
         }
         contact.both_ways = true;
-        if contact.depth.is_none() {
+        let mut faces = sides.iter().flat_map(|side| &side.faces);
+        // around middles it is left to the surfaces
+        if contact.depth.is_none() && faces.all(|face| face.radius.is_none()) {
             let faces = sides.iter().flat_map(|side| &side.faces);
             let heights = faces.map(|face| height(mesh, face.parent, face.kind, face.corners()));
             contact.depth = Some(heights.fold(f64::INFINITY, f64::min));

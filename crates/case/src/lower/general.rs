@@ -231,7 +231,8 @@ fn between(
     let both_ways = (itself || zones[0] == zones[1])
         && !quadratic
         && !law.get().is_of_the_whole()
-        && [one, other].iter().any(|part| part.is_solid());
+        && ([one, other].iter().any(|part| part.is_solid())
+            || [one, other].iter().all(|part| part.is_shell()));
     let parts = many.then(|| apart.parts((secondary, primary), |body| folds(&scope.bodies[body])));
     Some(ModelContact {
         parts,

@@ -73,6 +73,10 @@ impl<'a> Part<'a> {
         matches!(self.body.spec.kinematics, Kinematics::Beam(_))
     }
 
+    pub(super) fn is_shell(&self) -> bool {
+        matches!(self.body.spec.kinematics, Kinematics::Shell(_))
+    }
+
     /// Whether it is the outer side of cells that fill the space.
     pub(super) fn is_solid(&self) -> bool {
         self.surface.faces.iter().all(|face| face.radius.is_none())

@@ -49,6 +49,7 @@ mod resolved;
 mod resume;
 mod resume_cases;
 mod rigid_stages;
+mod shells_both_ways;
 mod simulation;
 mod stage_one;
 mod stages;

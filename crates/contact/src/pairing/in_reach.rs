@@ -49,6 +49,7 @@ impl Contact {
             }
         }
         let (tree, lines) = (&search.faces, &search.lines.tree);
+        let wide = self.widest();
         let of_point = |&point: &u32| {
             let k = point as usize;
             if self.points[k].is_at_edge() {
@@ -56,7 +57,7 @@ impl Contact {
             }
             let (x, view) = (self.points[k].place(places), self.view(k));
             // whoever is outside gets no deeper than both sides move
-            let mut limit = self.limit(k, reach).max(2.0 * SQRT_2 * motion);
+            let mut limit = self.limit(k, reach, wide).max(2.0 * SQRT_2 * motion);
             if inside(k) {
                 let question = Question {
                     x,
@@ -80,7 +81,11 @@ impl Contact {
             }
             if found.faces.is_empty() {
                 found.clearance = tree
-                    .rest_of((places, faces), of, [limit, FARTHER * self.limit(k, most)])
+                    .rest_of(
+                        (places, faces),
+                        of,
+                        [limit, FARTHER * self.limit(k, most, wide)],
+                    )
                     .max(motion);
             }
             found
@@ -97,10 +102,10 @@ impl Contact {
     ) -> InReach {
         let depth = self.edges.as_ref().map_or(0.0, Edges::depth);
         let wide = SQRT_2 * self.edges.as_ref().map_or(0.0, Edges::widest);
-        let limit = (self.limit(point, reach) + wide).max(depth);
+        let limit = (self.limit(point, reach, 0.0) + wide).max(depth);
         let faces = self.edges_in_reach(target, point, [limit, motion]);
         let clearance = || {
-            let farthest = limit + FARTHER * self.limit(point, most);
+            let farthest = limit + FARTHER * self.limit(point, most, 0.0);
             let apart = self.distance_of_edges(target, point, farthest);
             (0.5 * (apart.unwrap_or(farthest) - limit)).max(motion)
         };

@@ -19,7 +19,7 @@ use crate::search::group::Group;
 use crate::search::kept::Kept;
 use crate::search::lines::Lines;
 use crate::search::through::Start;
-use crate::search::{Stand, Way, faces_point, foot_on, is_between};
+use crate::search::{Stand, Way, faces_point, is_between};
 use crate::{Contact, Places, Search, Target};
 
 impl Contact {
@@ -136,7 +136,10 @@ impl Contact {
     ) -> (Option<Stencil>, f64) {
         let k = number as usize;
         let (point, view, inside) = (&self.points[k], self.view(k), (near.inside)(k));
-        let (x, limit) = (point.place(target.0), self.limit(k, reach.watched));
+        let (x, limit) = (
+            point.place(target.0),
+            self.limit(k, reach.watched, reach.wide),
+        );
         let behind = || point.behind(target.0);
         let stand = Stand {
             x: &x,
@@ -154,7 +157,7 @@ impl Contact {
         };
         let slot = k % BLOCK;
         if let Some(held) = group.ways.get(slot).and_then(|way| way.held) {
-            let (foot, face) = foot_on(target.0, target.1, held, &x);
+            let (foot, face) = tree.held(target, (stand, view), held);
             let near = foot.gap - point.radius + self.offset(k) <= reach.near;
             let stencil = near.then(|| Stencil::on_face(target.0, point, &x, &foot, face));
             return (stencil, 0.0);
@@ -200,7 +203,11 @@ impl Contact {
             (None, _) if inside => (None, 0.0),
             (_, Some(view)) => (
                 None,
-                tree.rest_of(target, (Some(view), &x), [limit, self.limit(k, reach.most)]),
+                tree.rest_of(
+                    target,
+                    (Some(view), &x),
+                    [limit, self.limit(k, reach.most, reach.wide)],
+                ),
             ),
             // both sides move
             (Some((foot, _)), None) => (None, 0.5 * (foot.distance - limit)),
@@ -219,9 +226,9 @@ impl Contact {
             return (None, f64::INFINITY);
         };
         let wide = SQRT_2 * edges.widest();
-        let limit = (self.limit(k, reach.watched) + wide).max(edges.depth());
+        let limit = (self.limit(k, reach.watched, 0.0) + wide).max(edges.depth());
         let limit = limit.min(edges.reach());
-        let most = (self.limit(k, reach.most) + wide).max(2.0 * limit);
+        let most = (self.limit(k, reach.most, 0.0) + wide).max(2.0 * limit);
         // whether edges meet may change with any motion, their distance may not
         let apart = self
             .distance_of_edges((places, &lines.tree), k, most)
@@ -236,9 +243,10 @@ impl Contact {
         (stencil, 0.0)
     }
 
-    /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal.
-    pub(super) fn limit(&self, point: usize, reach: f64) -> f64 {
+    /// Distance from which on nothing is looked at, m: a foot may lie as far sideways as along the normal. `wide`: the most that a face is thick beyond
+    /// its place, m.
+    pub(super) fn limit(&self, point: usize, reach: f64, wide: f64) -> f64 {
         let beside = self.points[point].radius - self.offset(point);
-        SQRT_2 * (reach + beside.max(0.0))
+        SQRT_2 * (reach + beside.max(0.0) + wide)
     }
 }

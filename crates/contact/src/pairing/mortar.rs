@@ -208,7 +208,7 @@ impl<'a> Sweep<'a> {
             for &item in found.iter() {
                 let face = &faces[item as usize];
                 self.over_face((&cell, side), face, |foot| {
-                    search.faces.shows(self.places, view, (item, foot))
+                    search.faces.shows(self.places, view, (item, face), foot)
                 });
             }
         }

@@ -55,6 +55,8 @@ pub(super) struct Reach {
     pub watched: f64,
     /// The largest that the first two can be.
     pub most: f64,
+    /// The most that a face is thick beyond its place.
+    pub wide: f64,
 }
 
 impl Pairing {
@@ -176,13 +178,18 @@ impl Contact {
             _ => most,
         };
         let most = most.max(reach);
+        let watched = rest.watch(reach, most);
+        rest.due(&mut due);
         let reach = Reach {
             near: reach,
-            watched: rest.watch(reach, most),
+            watched,
             most,
+            wide: if due.is_empty() { 0.0 } else { self.widest() },
         };
-        rest.due(&mut due);
         if !due.is_empty() {
+            if rest.motion() == f64::INFINITY {
+                search.forget_boxes();
+            }
             if let (Target::Surface(faces), false) = (&self.target, small) {
                 let lines = self.edges.as_ref().map_or(&[][..], Edges::lines);
                 search.renew_near(places, (faces, lines), rest.travelled());
@@ -252,8 +259,16 @@ impl Contact {
         };
         let round = faces.iter().filter(|face| face.is_round());
         let other = round.filter_map(|face| face.radius).reduce(f64::max)?;
-        let own = self.points.iter().map(|point| point.radius);
-        Some(own.fold(0.0, f64::max) + other)
+        // of a surface with both kinds of faces shells touch solids
+        let own = match faces.iter().all(Face::is_round) || !self.looks_both_ways() {
+            true => self
+                .points
+                .iter()
+                .map(|point| point.radius)
+                .fold(0.0, f64::max),
+            false => 0.0,
+        };
+        Some(own + other)
     }
 
     /// Whether points can get behind the other side so far that they are not pushed back: neither those of obstacles nor those that keep their

@@ -270,6 +270,9 @@ impl Stencil {
                 round::add_edge_curvature((&self.point, foot), signed, factor, block);
             }
             Foot::Face(foot) if foot.face.is_round() && !round::is_inside(foot) => {
+                // of a point that is over the middle the distance counts negative
+                let along = (0..3).map(|i| self.normal[i] * foot.r[i]).sum::<f64>();
+                let factor = if along < 0.0 { -factor } else { factor };
                 round::add_curvature(&self.point, foot, factor, block);
             }
             Foot::Face(foot) if foot.dim() == 0 => (),

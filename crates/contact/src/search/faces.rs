@@ -84,7 +84,8 @@ pub(crate) struct Scratch {
 impl FaceTree {
     /// Brings the boxes to a configuration of the faces, unless they have moved by less than the skin allows.
     pub fn renew(&mut self, places: &Places, faces: &[Face]) {
-        let tree = self.tree.as_ref().filter(|tree| tree.len() == faces.len());
+        let tree = self.tree.as_ref();
+        let tree = tree.filter(|tree| tree.len() == faces.len() && self.has_places());
         let bounds = |item: u32| hull(places, &faces[item as usize]);
         match tree.and_then(|tree| tree.motion(0.5 * self.skin, bounds)) {
             Some(moved) => {
@@ -98,7 +99,8 @@ impl FaceTree {
     /// Tells how far faces may have moved since the boxes were taken, over a translation of all; whether the boxes still serve.
     pub fn has_moved(&mut self, faces: usize, moved: f64, shift: [f64; 3]) -> bool {
         let count = self.tree.as_ref().map_or(0, BoxTree::len);
-        let serves = count == faces && (0.0..=0.5 * self.skin).contains(&moved);
+        let within = (0.0..=0.5 * self.skin).contains(&moved);
+        let serves = count == faces && within && self.has_places();
         if serves {
             (self.moved, self.shift) = (moved, shift);
             self.age = self.age.saturating_add(1);
@@ -106,14 +108,20 @@ impl FaceTree {
         serves
     }
 
+    /// Whether the tree was built of places that are numbers: not so those of iterations that lead nowhere, whose boxes would serve for ever.
+    fn has_places(&self) -> bool {
+        self.skin.is_finite()
+    }
+
     /// Takes the boxes of the faces where they are.
     pub fn take_boxes(&mut self, places: &Places, faces: &[Face]) {
         (self.moved, self.shift, self.age) = (0.0, [0.0; 3], 0);
         self.epoch = self.epoch.wrapping_add(1);
         let bounds = |item: u32| hull(places, &faces[item as usize]);
+        let has_places = self.has_places();
         if let Some(tree) = self.tree.as_mut().filter(|tree| tree.len() == faces.len()) {
             tree.refit(bounds);
-            if tree.looseness() <= LOOSE {
+            if tree.looseness() <= LOOSE && has_places {
                 return;
             }
         }
@@ -203,14 +211,20 @@ impl FaceTree {
             }
             count += 1;
             let foot = foot_on(places, faces, item, x).0;
-            let seen = view.is_none_or(|view| {
-                view.shows(places, (item, &foot), &self.normals)
-                    && faces_point((stand, &foot), face, false, || places.of_face(face))
-                    && !view.is_over_neighbour((item, &foot), stand, (places, faces))
-            });
-            if !seen {
-                return f64::INFINITY;
-            }
+            let foot = match view {
+                None => foot,
+                Some(view) => {
+                    let seen = view.seen((places, stand), (item, face), foot, &self.normals);
+                    let seen = seen.filter(|foot| {
+                        faces_point((stand, foot), face, false, || places.of_face(face))
+                            && !view.is_over_neighbour((item, foot), stand, (places, faces))
+                    });
+                    match seen {
+                        Some(foot) => foot,
+                        None => return f64::INFINITY,
+                    }
+                }
+            };
             let nearer = |(first, best): &(u32, Projection)| {
                 foot.distance < best.distance || foot.distance == best.distance && item < *first
             };
@@ -323,6 +337,20 @@ impl FaceTree {
         tree.closest(&there, within, self.moved + beside, measure)
     }
 
+    /// The foot of a place on a face that it stays with.
+    pub fn held<'a>(
+        &self,
+        (places, faces): (&Places, &'a [Face]),
+        (stand, view): (Stand, Option<View>),
+        item: u32,
+    ) -> (Projection, &'a Face) {
+        let (foot, face) = foot_on(places, faces, item, stand.x);
+        let turned = view.filter(|_| face.is_round());
+        let turned =
+            turned.and_then(|view| view.seen((places, stand), (item, face), foot, &self.normals));
+        (turned.unwrap_or(foot), face)
+    }
+
     /// Items whose boxes are within a distance (m) of a place.
     pub fn near(&self, x: &[f64; 3], within: f64) -> Vec<u32> {
         let mut near = Vec::new();
@@ -397,9 +425,9 @@ impl FaceTree {
         };
         if let Some((view, height)) = outlook.0.filter(|_| rest < most) {
             self.with_corners((item, face), places, |corners| {
-                rest = rest.max(view.hidden((item, corners), height, &self.normals));
+                rest = rest.max(view.hidden((item, face), corners, height, &self.normals));
                 if rest < most {
-                    rest = rest.max(view.behind(corners, x));
+                    rest = rest.max(view.behind(face, corners, x));
                 }
             });
         }
@@ -419,7 +447,7 @@ impl FaceTree {
         places: &Places,
     ) -> bool {
         self.with_corners((item, face), places, |corners| {
-            corners.is_some_and(|corners| view.is_blind((item, corners), x, &self.normals))
+            corners.is_some_and(|corners| view.is_blind((item, face), corners, x, &self.normals))
         })
     }
 
@@ -441,9 +469,15 @@ impl FaceTree {
         &self,
         places: &Places,
         view: Option<View>,
-        (item, foot): (u32, &Projection),
+        of: (u32, &Face),
+        foot: &Projection,
     ) -> bool {
-        view.is_none_or(|view| view.shows(places, (item, foot), &self.normals))
+        let stand = Stand {
+            x: &foot.point,
+            of: None,
+        };
+        let seen = |view: View| view.seen((places, stand), of, *foot, &self.normals);
+        view.is_none_or(|view| seen(view).is_some())
     }
 
     /// Faces whose boxes have a point in common with a box, sorted, into `found`, which is cleared first.

@@ -39,7 +39,7 @@ impl FaceTree {
         start: &Start,
         found: u32,
     ) -> Option<(u32, Projection)> {
-        if start.is_before(faces, found) {
+        if faces[found as usize].is_round() || start.is_before(faces, found) {
             return None;
         }
         let stand = Stand {
@@ -48,17 +48,15 @@ impl FaceTree {
         };
         let foot_of = |item: u32| {
             let (foot, face) = foot_on(places, faces, item, &question.x);
-            let sees = || {
-                question
-                    .view
-                    .is_none_or(|view| view.shows(places, (item, &foot), self.normals()))
+            let is_through = foot.gap < 0.0 && foot.inside && !face.is_round();
+            let foot = match question.view.filter(|_| is_through) {
+                Some(view) => view.seen((places, stand), (item, face), foot, self.normals())?,
+                None => foot,
             };
-            let is_through = foot.gap < 0.0
-                && foot.inside
-                && sees()
+            let counts = is_through
                 && faces_point((stand, &foot), face, false, || places.of_face(face))
                 && start.is_before(faces, item);
-            is_through.then_some(foot)
+            counts.then_some(foot)
         };
         let distance = |item: u32| foot_of(item).map_or(f64::INFINITY, |foot| foot.distance);
         let (item, _) = self.nearest_within((&question.x, 0.0), question.within, distance)?;

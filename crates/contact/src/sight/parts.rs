@@ -35,8 +35,8 @@ impl Part {
 
 impl Parts {
     /// The parts of two sides with this many faces, of one part each where none are given, both together as secondary surface and as target:
-    /// faces of one side do not touch.
-    pub fn both_ways(given: Option<&Parts>, [first, second]: [usize; 2]) -> Parts {
+    /// faces of one side do not touch. `lines`: how many lines of the second side are behind the faces in the target.
+    pub fn both_ways(given: Option<&Parts>, [first, second]: [usize; 2], lines: usize) -> Parts {
         let number =
             |of: fn(&Parts) -> &Vec<Part>, k: usize| given.map_or(0, |parts| of(parts)[k].number);
         let one = (0..first).map(|k| Part {
@@ -48,9 +48,15 @@ impl Parts {
             is_first: Some(false),
         });
         let both: Vec<Part> = one.chain(other).collect();
+        let line = Part {
+            // bodies that do not touch are told by their faces alone
+            number: u32::MAX,
+            is_first: Some(false),
+        };
+        let primary = both.iter().copied();
         Parts {
-            secondary: both.clone(),
-            primary: both,
+            primary: primary.chain(std::iter::repeat_n(line, lines)).collect(),
+            secondary: both,
             apart: given.map(|parts| parts.apart.clone()).unwrap_or_default(),
         }
     }

@@ -79,12 +79,12 @@ pub fn matrix(pairing: &Pairing, n: usize) -> Csr {
 /// Rows are the derivatives of gaps and curvatures those of rows, by central differences of step 1e-5: they err by its
 /// square, times third and fourth derivatives of the order of a hundred in SI units at most, and by rounding over the step.
 ///
-/// `held`: what a pairing at another displacement is; it keeps what the derivatives keep.
+/// `held`: what a pairing at another displacement is; it keeps what the derivatives keep. Points that face nothing are left out.
 pub fn assert_derivatives(places: &Places, held: impl Fn(&Places) -> Pairing) {
     const STEP: f64 = 1e-5;
     let n = places.u.len();
     let pairing = held(places);
-    for point in 0..pairing.len() {
+    for point in (0..pairing.len()).filter(|&point| pairing.rows.gap(point).is_finite()) {
         let row = full(&pairing, point, n);
         let mut curvature = matrix(&pairing, n);
         pairing.add_curvature(point, 2.0, 0.5, &mut curvature);

@@ -10,6 +10,7 @@ mod cores;
 mod derivatives;
 mod edges;
 mod fixture;
+mod middles;
 mod mortar;
 mod moving;
 mod nearest;

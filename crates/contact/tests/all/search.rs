@@ -297,3 +297,27 @@ fn a_point_that_comes_back_twice_in_a_step_stays_with_its_face() {
     search.begin_step();
     assert_eq!(normals(&mut search)[..3], ways[..3], "a new step forgets");
 }
+
+/// An iteration that leads nowhere leaves nothing behind.
+#[test]
+fn places_that_are_no_numbers_do_no_harm_to_those_after_them() {
+    let scene = Scene::new(Kind::Quad4, 10, 40);
+    let unknowns = Unknowns::translations(3, scene.x.len());
+    let still = vec![0.0; 3 * scene.x.len()];
+    let places = |u| Places {
+        unknowns: &unknowns,
+        time: 0.0,
+        x: &scene.x,
+        u,
+        frames: Frames::default(),
+    };
+    let mut search = Search::default();
+    let before = paired(&scene.contact, &places(&still), &mut search);
+    let nowhere = vec![f64::NAN; still.len()];
+    for _ in 0..3 {
+        paired(&scene.contact, &places(&nowhere), &mut search);
+    }
+    let after = paired(&scene.contact, &places(&still), &mut search);
+    assert!(after == before);
+    assert!((0..after.len()).any(|point| after.gap(point).is_finite()));
+}

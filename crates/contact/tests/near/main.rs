@@ -11,6 +11,7 @@ use carom_mesh::{ElementId, Face, Rim, face_nodes};
 use carom_testing::Random;
 
 mod halves;
+mod shells;
 
 const STEPS: usize = 120;
 /// Reach, in edges.
@@ -398,6 +399,54 @@ fn a_surface_on_itself() {
     let (scene, contact) = two_plates();
     let seen = check(&scene, &contact, scene.sheets[2]);
     assert_fewer(&seen);
+}
+
+/// An iteration that leads nowhere leaves nothing behind.
+#[test]
+fn places_that_are_no_numbers_do_no_harm_to_those_after_them() {
+    let scene = two_sheets();
+    let contact = contact(Target::Surface(scene.of(0)), nodes_of(&scene, 1));
+    let unknowns = Unknowns::translations(3, scene.x.len());
+    let (mut search, mut near) = (Search::default(), Pairing::default());
+    near.open_all(std::slice::from_ref(&contact), 3);
+    let nodes = scene.x.len();
+    // the upper sheet stays 3 above the lower one, is nowhere, and is 0.1 above it
+    let down = |way: f64| {
+        let at = |k: usize| {
+            if k / 3 >= scene.sheets[1] && k % 3 == 2 {
+                way
+            } else {
+                0.0
+            }
+        };
+        (0..3 * nodes).map(at).collect::<Vec<f64>>()
+    };
+    let ways = [0.0, 0.0, f64::NAN, f64::NAN, -2.9, -2.9];
+    let found = ways.map(|way| {
+        let u = if way.is_nan() {
+            vec![way; 3 * nodes]
+        } else {
+            down(way)
+        };
+        near.reopen();
+        let given = Near {
+            first: 0,
+            reach: REACH,
+            step: None,
+            inside: &|_| false,
+            initial: &Pairing::default(),
+            own: None,
+        };
+        contact.pair_near(
+            &places(&unknowns, &scene, &u),
+            &mut search,
+            &given,
+            &mut near,
+        );
+        near.near().len()
+    });
+    assert_eq!(found[..2], [0, 0]);
+    assert_eq!(found[4..], [36, 36]);
 }
 
 /// The bound of the motion is that against the drift.

@@ -264,6 +264,13 @@ impl Scene {
         }
     }
 
+    /// Whether its scheme keeps the energy of what turns far in a step. Theta does not, of shells: it gains while nothing touches, and nothing
+    /// in steps of a quarter.
+    pub fn keeps_energy(&self) -> bool {
+        let mut bodies = self.bodies.iter();
+        self.pose != Pose::Rigid || !bodies.any(|body| body.part.cells == Cells::Shells)
+    }
+
     /// With nothing between the bodies.
     pub fn without_contact(self) -> Scene {
         Scene {

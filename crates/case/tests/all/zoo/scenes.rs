@@ -36,6 +36,9 @@ pub const MEETINGS: &[Maker] = &[
     sections::beam_end_on_face,
     sections::beam_on_shell_edge,
     sections::cord_over_edge,
+    sections::shell_edge_on_ridge,
+    sections::shell_edge_on_face,
+    sections::solid_corner_on_shell,
 ];
 
 /// The same, which explicit steps do not take.
@@ -67,9 +70,6 @@ pub const OPEN: &[Maker] = &[
     sections::shells_edge_on_edge,
     sections::shell_edge_on_shell,
     sections::shell_corner_on_shell,
-    sections::shell_edge_on_ridge,
-    sections::shell_edge_on_face,
-    sections::solid_corner_on_shell,
     corner_rudely,
     bars_rudely,
     disc_rudely,

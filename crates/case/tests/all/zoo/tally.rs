@@ -68,7 +68,7 @@ impl Tally {
         }
         if are_held {
             wrong.extend(held(seen, outcome));
-            wrong.extend(grown(pose, outcome));
+            wrong.extend(grown((scene, pose), outcome));
         }
         wrong
     }
@@ -137,15 +137,18 @@ fn held(seen: Seen, outcome: &Outcome) -> impl Iterator<Item = String> {
     crossed.into_iter().chain(failed)
 }
 
-/// Energy that comes from nowhere.
-fn grown(pose: Pose, outcome: &Outcome) -> Option<String> {
+/// Energy that comes from nowhere, or from contact where the scheme makes some by itself.
+fn grown((scene, pose): (&Scene, Pose), outcome: &Outcome) -> Option<String> {
     let [implicit, explicit] = GROWTH;
     let bound = match pose {
         Pose::Explicit => explicit,
         Pose::Rigid | Pose::Deformable => implicit,
     };
     let first = outcome.energies.first()?;
-    let part = |now: &Energies| (now.total - first.total) / first.kinetic;
+    let part = |now: &Energies| match scene.keeps_energy() {
+        true => (now.total - first.total) / first.kinetic,
+        false => now.contact / first.kinetic,
+    };
     let begin = outcome.energies.iter().position(|now| part(now) > bound)?;
     let most = outcome.energies.iter().map(part).fold(0.0, f64::max);
     let contact = outcome
