@@ -430,6 +430,7 @@ fn places_that_are_no_numbers_do_no_harm_to_those_after_them() {
         };
         near.reopen();
         let given = Near {
+            start: None,
             first: 0,
             reach: REACH,
             step: None,
