@@ -220,22 +220,7 @@ impl Certificate {
             crossing.is_none()
         });
         next.pairs = pairs;
-        cuts || self.meets_again(system, (end, [before, time]), next)
-    }
-
-    /// Whether two that met, and are apart since, meet again in a way that a smaller step may keep them from. It was told before.
-    fn meets_again(&mut self, system: &System, step: (&State, [f64; 2]), next: &mut Told) -> bool {
-        let mut met: Vec<[u32; 2]> = next.crossings.iter().map(|crossing| crossing.of).collect();
-        met.retain(|of| {
-            for number in of {
-                self.movers[*number as usize].place();
-            }
-            let mut pair = Pair { of: *of, left: 0.0 };
-            !self.overlaps_at_start(system.dim, *of)
-                && (self.look(system, step, (&mut pair, &mut next.tested)))
-                    .is_some_and(|crossing| self.may_be_cut(system, &crossing))
-        });
-        !met.is_empty()
+        cuts
     }
 
     /// The attempt that was looked at last is taken.

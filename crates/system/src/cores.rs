@@ -122,23 +122,13 @@ impl System {
         let vertices: Vec<(Vec<(u32, f64)>, f64)> = vertices
             .map(|(&node, (cells, normals))| self.vertex(node, cells, normals))
             .collect();
-        // of flat cells the ways to the middles are long, and hardly go below the faces
-        let deepest = vertices.iter().map(|(_, depth)| *depth).fold(0.0, f64::max);
-        let vertices: Vec<(Vec<(u32, f64)>, f64)> = vertices
-            .into_iter()
-            .map(|(weights, depth)| (weights, KEPT * depth))
-            .collect();
         let patches = surface.faces.iter().map(|face| {
             let corners = face.corners().iter();
             let corners = corners.map(|&node| surface.index_of(node).unwrap_or_default() as u32);
             (face.kind, corners.collect())
         });
         let patches: Vec<(Kind, Vec<u32>)> = patches.collect();
-        let core = self.made(&vertices, &patches);
-        match deepest > 0.0 {
-            true => core.with_depth(deepest),
-            false => core,
-        }
+        self.made(&vertices, &patches)
     }
 
     /// The unit normal of a face of a cell, out of that.
@@ -177,7 +167,7 @@ impl System {
         sum.map(|sum: f64| sum / nodes.len() as f64)
     }
 
-    /// The weights of a vertex below a node of the mesh, that of the node first, and how far it is below all faces there, m; zero if it is not.
+    /// The weights of a vertex below a node of the mesh, that of the node first, with the distance that others keep from it, m.
     ///
     /// At an inner corner, where the mean of the ways to the middles of the cells leads out of the body, it is on the way to the neighbour that is furthest
     /// below all faces there, if any is.
@@ -212,14 +202,13 @@ impl System {
             weights = best.unwrap_or(weights);
             shift = self.shift(node, &weights);
         }
-        let sine = below(&shift, normals).clamp(0.0, 1.0);
-        let depth = sine * dot(&shift, &shift).sqrt();
+        let depth = dot(&shift, &shift).sqrt();
         let own = weights.remove(&node).map(|weight| (node, weight));
         let numbered = own
             .into_iter()
             .chain(weights)
             .map(|(node, weight)| (self.number[node as usize], weight));
-        (numbered.collect(), depth)
+        (numbered.collect(), KEPT * depth)
     }
 
     /// From a node to where weights put a vertex, m.

@@ -111,9 +111,8 @@ impl Core {
     /// Part of the way from its nodes to its vertices at which the latter are, against another core: nothing is to go through a thin body before that is
     /// told. Without an end to what others may do, all of it.
     pub fn part_against(&self, other: &Core) -> f64 {
-        let is_inside = self.inset > 0.0;
-        match is_inside && other.depth > 0.0 && other.depth < self.depth {
-            true => other.depth / self.depth,
+        match other.depth > 0.0 && other.depth < self.inset {
+            true => other.depth / self.inset,
             false => 1.0,
         }
     }
@@ -121,7 +120,7 @@ impl Core {
     /// How deep another may come before the two meet, m, where the vertices are at a part of the way to them.
     pub fn margin(&self, part: f64) -> f64 {
         match self.inset > 0.0 {
-            true => part * self.depth,
+            true => part * self.inset,
             false => self.depth,
         }
     }
@@ -129,7 +128,7 @@ impl Core {
     /// Half the thickness of what is below the surface, m: of an element of a solid, of a shell or a beam, or the like.
     pub fn half(&self) -> f64 {
         match self.inset > 0.0 {
-            true => OF_INSET * self.depth,
+            true => OF_INSET * self.inset,
             false => OF_DEPTH * self.depth,
         }
     }

@@ -85,25 +85,3 @@ fn one_with_an_inner_corner_does_not_come_out_of_it() {
         assert!(within && !fourth, "{x:?}");
     }
 }
-
-/// A plate of two by two cells of 60 mm and 12 mm of thickness: others may come 1/20 of the thickness below its surface, and half of it is 6 mm, however wide the cells are.
-#[test]
-fn the_depth_of_a_plate_is_a_part_of_its_thickness() {
-    let plate = |name: &str, z: f64| {
-        generate::box_(name, [0.0, 0.0, z], [0.12, 0.12, 0.012], [2, 2, 1], false)
-    };
-    let mut mesh = plate("a", 0.0);
-    mesh.merge("b", plate("b", 0.1)).unwrap();
-    let body = |name: &str| {
-        let cells = mesh.groups[name].elements.clone();
-        ModelBody::new(BodySpec::new(name, cells, Kinematics::Solid, SOFT))
-    };
-    let bodies = ["a", "b"].map(body).into();
-    let scheme = Scheme::Theta(Theta { theta: 0.5 });
-    let system = System::new(Model::new(bodies, mesh.clone(), scheme, 0.1)).unwrap();
-    for of in system.cores() {
-        assert_eq!(of.core.part_against(&of.core), 1.0);
-        assert!((of.core.margin(1.0) - 0.012 / 20.0).abs() < 1e-15);
-        assert!((of.core.half() - 0.006).abs() < 1e-15);
-    }
-}
