@@ -39,10 +39,17 @@ impl Block {
         matrix.add_block(unknowns, &self.entries[..self.n * self.n]);
     }
 
-    /// Adds to it what couples the unknowns of the first `own` nodes with each other, and those of the others.
-    pub fn add_sides_to(&self, unknowns: &[u32], own: usize, matrix: &mut Csr) {
+    /// Adds to it what couples the unknowns of the first `own` nodes with each other, and those of the others, of a side whose unknowns it all
+    /// `takes`.
+    pub fn add_sides_to(
+        &self,
+        (unknowns, own): (&[u32], usize),
+        takes: &dyn Fn(u32) -> bool,
+        matrix: &mut Csr,
+    ) {
         let own = self.dim * own;
-        for side in [0..own, own..self.n] {
+        let sides = [0..own, own..self.n].into_iter();
+        for side in sides.filter(|side| unknowns[side.clone()].iter().all(|&i| takes(i))) {
             for i in side.clone() {
                 for j in side.clone() {
                     let entry = self.entries[i * self.n + j];

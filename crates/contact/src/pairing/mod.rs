@@ -135,17 +135,17 @@ impl Pairing {
             let stencil = &self.stencils[stencil as usize];
             (stencil, weight * factor * force)
         });
-        add_loads(loads, (self.dim, false), matrix);
+        add_loads(loads, (self.dim, None), matrix);
     }
 
     /// Adds factor · Σ force · ∂²g/∂u² of some points: the sum of [`Pairing::add_curvature`] over them, each stencil looked
     /// at once however many multipliers share it. `forces`: points and forces in N; `loads`: scratch; `apart`: what couples the two sides is left
-    /// out, and the pairs within the faces are all that are needed.
+    /// out, and so is a side with an unknown that it does not take; the pairs within the faces are all that are needed.
     pub fn add_curvatures(
         &self,
         forces: impl Iterator<Item = (usize, f64)>,
         factor: f64,
-        (loads, apart): (&mut Vec<f64>, bool),
+        (loads, apart): (&mut Vec<f64>, Option<&dyn Fn(u32) -> bool>),
         matrix: &mut Csr,
     ) {
         loads.clear();
@@ -253,15 +253,18 @@ impl Pairing {
 /// Adds the curvature of stencils times their loads; those that follow each other on the same nodes make one block.
 fn add_loads<'a>(
     loads: impl Iterator<Item = (&'a Stencil, f64)>,
-    (dim, apart): (usize, bool),
+    (dim, apart): (usize, Option<&dyn Fn(u32) -> bool>),
     matrix: &mut Csr,
 ) {
     let mut block = Block::new(dim);
     let mut add = |block: &Block, first: &Stencil| {
         let (unknowns, n) = first.unknowns(dim);
         match apart {
-            true => block.add_sides_to(&unknowns[..n], first.carriers().count(), matrix),
-            false => block.add_to(&unknowns[..n], matrix),
+            Some(takes) => {
+                let own = first.carriers().count();
+                block.add_sides_to((&unknowns[..n], own), takes, matrix);
+            }
+            None => block.add_to(&unknowns[..n], matrix),
         }
     };
     let mut first: Option<&Stencil> = None;

@@ -207,8 +207,8 @@ fn the_curvature_of_all_points_is_the_sum_of_theirs() {
         }
         let forces = forces.iter().copied().enumerate();
         let mut apart = matrix(&pairing, n);
-        pairing.add_curvatures(forces.clone(), 3.0, (&mut Vec::new(), false), &mut all);
-        pairing.add_curvatures(forces, 3.0, (&mut Vec::new(), true), &mut apart);
+        pairing.add_curvatures(forces.clone(), 3.0, (&mut Vec::new(), None), &mut all);
+        pairing.add_curvatures(forces, 3.0, (&mut Vec::new(), Some(&|_| true)), &mut apart);
         let (mut size, mut kept, mut left) = (0.0_f64, 0, 0);
         for i in 0..n {
             for (a, b) in one.row(i).1.iter().zip(all.row(i).1) {

@@ -46,9 +46,15 @@ impl Matrices {
         a.symmetrise();
         let forces = turning.forces.iter().copied().enumerate();
         let forces = forces.filter(|(_, force)| *force != 0.0);
+        // the matrix of a linear part stays
+        let iterates = |unknown: u32| self.iterated[system.part_of(unknown as usize)];
+        let apart: Option<&dyn Fn(u32) -> bool> = match at.apart {
+            true => Some(&iterates),
+            false => None,
+        };
         turning
             .pairing
-            .add_curvatures(forces, -turning.factor, (loads, at.apart), &mut a);
+            .add_curvatures(forces, -turning.factor, (loads, apart), &mut a);
         for group in &mut self.operators.groups[first..] {
             for part in &group.parts {
                 for i in part.clone() {
